@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ TEST(ImpulseNewton, CarriesATonOnAGram) {
   ProjectedGaussSeidel s = column({1e-3, 1e3}, 0.0);
   for (int k = 0; k < 100; ++k) s.sweep(k % 2 == 1);
   EXPECT_LT(s.points[1].normal_impulse, 1e-3);  // of 9.81 N s
-  ASSERT_TRUE(solve_impulses(s, 1e-6 * kFall));
+  ASSERT_TRUE(solve_impulses(s, 1e-6 * kFall, 1e-6 * kFall));
   EXPECT_NEAR(s.points[1].normal_impulse, 1e3 * kFall, 3e-3);
   EXPECT_NEAR(s.points[0].normal_impulse - s.points[1].normal_impulse, 1e-3 * kFall, 1e-8);
   for (int b = 0; b < 2; ++b) EXPECT_NEAR(s.bodies[b].v.z(), 0.0, 3e-4 * kFall);
@@ -55,7 +55,7 @@ TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
     ProjectedGaussSeidel swept = column({2.0, 0.5, 1.0, 3.0}, along), found = swept;
     for (int k = 0; k < 20000; ++k) swept.sweep(k % 2 == 1);
     for (int k = 0; k < 5; ++k) found.sweep(k % 2 == 1);
-    ASSERT_TRUE(solve_impulses(found, 1e-7 * kFall)) << along;
+    ASSERT_TRUE(solve_impulses(found, 1e-7 * kFall, 1e-7 * kFall)) << along;
     for (std::size_t k = 0; k < found.points.size(); ++k) {
       EXPECT_NEAR(found.points[k].normal_impulse, swept.points[k].normal_impulse, 1e-7)
           << along << ' ' << k;
@@ -67,9 +67,10 @@ TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
   }
 }
 
-/// Rolling and torsional friction that holds or slips, against the limit of very many sweeps.
+/// Rolling and torsional friction that holds and that slips, against the limit of very many sweeps.
 /// @tests{nonsmooth-projection}
 TEST(ImpulseNewton, FindsRollingAndTorsionalFriction) {
+  int hold = 0, slip = 0;
   for (const double spin : {0.0, 1e-2, 1.0}) {
     ProjectedGaussSeidel swept = column({2.0, 0.5, 1.0, 3.0}, 0.01);
     for (std::size_t k = 0; k < swept.points.size(); ++k) {
@@ -80,19 +81,61 @@ TEST(ImpulseNewton, FindsRollingAndTorsionalFriction) {
     ProjectedGaussSeidel found = swept;
     for (int k = 0; k < 200000; ++k) swept.sweep(k % 2 == 1);
     for (int k = 0; k < 5; ++k) found.sweep(k % 2 == 1);
-    ASSERT_TRUE(solve_impulses(found, 1e-8 * kFall)) << spin;
-    double largest = 0.0;
+    ASSERT_TRUE(solve_impulses(found, 1e-8 * kFall, 1e-8 * kFall)) << spin;
     for (std::size_t k = 0; k < found.turns.size(); ++k) {
       EXPECT_NEAR(found.points[k].normal_impulse, swept.points[k].normal_impulse, 1e-7) << spin;
       EXPECT_LT((found.turns[k].impulse - swept.turns[k].impulse).norm(), 1e-8) << spin << ' ' << k;
-      largest = std::max(largest, found.turns[k].impulse.norm());
+      const Vec3& turning = found.turns[k].impulse;
+      const double normal_impulse = found.points[k].normal_impulse,
+                   roll = turning.head<2>().norm() / (1e-3 * normal_impulse);
+      roll < 0.999 ? ++hold : ++slip;
+      EXPECT_LT(roll, 1.0 + 1e-9) << spin << ' ' << k;
+      EXPECT_LT(std::abs(turning.z()), 2e-3 * normal_impulse * (1.0 + 1e-9)) << spin << ' ' << k;
     }
-    EXPECT_GT(largest, 1e-6) << spin;
     for (int b = 0; b < 4; ++b) {
       EXPECT_LT((found.bodies[b].v - swept.bodies[b].v).norm(), 1e-7) << spin << ' ' << b;
       EXPECT_LT((found.bodies[b].w - swept.bodies[b].w).norm(), 1e-5) << spin << ' ' << b;
     }
   }
+  EXPECT_GT(hold, 0);
+  EXPECT_GT(slip, 0);
+}
+
+/// A box of 1 kg on its four corners, whose impulses are not unique, under one of 100 kg.
+TEST(ImpulseNewton, SharesALoadBetweenPoints) {
+  ProjectedGaussSeidel s;
+  const double a = 0.1;
+  for (const double m : {1.0, 100.0}) {
+    ProjectedGaussSeidel::Body b;
+    b.inverse_mass = 1.0 / m;
+    b.inverse_inertia = Mat3::Identity() * (6.0 / (m * 4.0 * a * a));
+    b.v = Vec3(0.02, 0.0, -kFall);
+    s.bodies.push_back(b);
+  }
+  s.bodies.emplace_back();
+  for (int k = 0; k < 8; ++k) {
+    ProjectedGaussSeidel::Point p;
+    p.a = k / 4;
+    p.b = k < 4 ? 2 : 0;
+    p.normal = Vec3::UnitZ();
+    p.arm_a = Vec3(k % 2 == 0 ? a : -a, k % 4 < 2 ? a : -a, -a);
+    p.arm_b = k < 4 ? Vec3(Vec3::Zero()) : Vec3(p.arm_a.x(), p.arm_a.y(), a);
+    p.friction = 0.1;
+    s.points.push_back(p);
+  }
+  s.prepare();
+  for (int k = 0; k < 3; ++k) s.sweep(k % 2 == 1);
+  ASSERT_TRUE(solve_impulses(s, 1e-9 * kFall, 1e-9 * kFall));
+  double on_floor = 0.0, on_box = 0.0, across = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    EXPECT_GE(s.points[k].normal_impulse, 0.0);
+    (k < 4 ? on_floor : on_box) += s.points[k].normal_impulse;
+    if (k < 4) across += s.points[k].friction_impulse.x();
+  }
+  EXPECT_NEAR(on_floor, 101.0 * kFall, 1e-8);
+  EXPECT_NEAR(on_box, 100.0 * kFall, 1e-8);
+  EXPECT_NEAR(across, -0.1 * on_floor, 1e-8);  // slides: 2 μ g Δt < 0.02 m/s
+  for (int b = 0; b < 2; ++b) EXPECT_NEAR(s.bodies[b].v.z(), 0.0, 1e-9);
 }
 
 }  // namespace

@@ -121,5 +121,28 @@ output: {hdf5: false}
   EXPECT_FALSE(warns(run(text, {"analysis.step=0.05 ms"}), "fewer than twenty steps"));
 }
 
+// A guide that is too short for its friction: the moment of a force causes more friction than the
+// force itself overcomes.
+TEST(RunErrors, NamesTheJointWhoseFrictionLocksIt) {
+  Simulation s(read_model_text(R"(
+format: 1
+gravity: [0, 0, 0]
+bodies:
+  slider: {mass: 1, inertia: [0.01, 0.01, 0.01], position: [0, 0.06, 0], velocity: [1, 0, 0]}
+joints:
+  guide:
+    {type: prismatic, bodies: [ground, slider], at: [0, 0, 0], axis: x,
+     friction: {mu: 0.2, radius: 0.01}}
+loads: {push: {type: force, body: slider, force: [0, 0, 3]}}
+analysis: {type: dynamics, duration: 0.3 s, step: 10 ms, min_step: 10 ms}
+output: {hdf5: false}
+)",
+                               "run.yaml"));
+  const RunSummary end = s.run();
+  EXPECT_EQ(end.end, RunEnd::not_converged);
+  EXPECT_NE(end.message.find("friction or a stop that locks joint 'guide'"), std::string::npos)
+      << end.message;
+}
+
 }  // namespace
 }  // namespace polhode::run_errors_tests

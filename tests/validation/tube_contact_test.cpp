@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 
 #include "contact/scene.hpp"
 #include "contact/shapes_for_tests.hpp"
+#include "support/scratch.hpp"
 
 namespace polhode::tube_contact_tests {
 namespace {
@@ -167,7 +169,7 @@ INSTANTIATE_TEST_SUITE_P(Steps, TubeOnAFloor, testing::ValuesIn(floors_and_steps
                                   std::to_string(std::lround(1e6 * given.param.dt)) + "_us";
                          });
 
-/// Speed of a pipe that rolls on its rims. As a polygon it would lose a third of it in a second.
+/// Speed of a pipe that rolls on its rims. As a polygon it would lose a quarter of it in a second.
 TEST(TubeContact, RollsFreelyByEitherLaw) {
   const std::string row = "[0, 0, 0, 0, 0, 0, 0]";
   const std::string floors[] = {
@@ -196,6 +198,37 @@ TEST(TubeContact, RollsFreelyByEitherLaw) {
         EXPECT_NEAR(s.body("pipe").r.z(), 0.1, 1e-6);
         EXPECT_LT(std::abs(end.contacts->numerical),
                   law == "barrier" ? 1e-9 : 200.0 * step * step * step);
+      }
+}
+
+/// A tube that falls, aligned, over a post that fits into it: a box, a hull and a mesh.
+TEST(TubeContact, FallsOverAPost) {
+  const Scratch folder;
+  std::ofstream(folder / "post.obj") << "v -0.05 -0.05 -0.2\nv 0.05 -0.05 -0.2\nv 0.05 0.05 -0.2\n"
+                                        "v -0.05 0.05 -0.2\nv -0.05 -0.05 0\nv 0.05 -0.05 0\n"
+                                        "v 0.05 0.05 0\nv -0.05 0.05 0\nf 1 3 2\nf 1 4 3\nf 5 6 7\n"
+                                        "f 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\n"
+                                        "f 3 8 7\nf 4 1 5\nf 4 5 8\n";
+  const std::string posts[] = {
+      "{box: [0.1, 0.1, 0.2], position: [0, 0, -0.1]}",
+      "{hull: {points: [[-0.05, -0.05, -0.2], [0.05, -0.05, -0.2], [0, 0.05, -0.2], [0, 0, 0]]}}",
+      format("{{mesh: {}}}", folder / "post.obj")};
+  for (const std::string& post : posts)
+    for (const std::string law : {"barrier", "nonsmooth"})
+      for (const double step : {5e-3, 1e-3}) {
+        SCOPED_TRACE(format("{} by {} at {} s", post, law, step));
+        Simulation s(read_model_text(
+            format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+                   "  post: {{fixed: true, shape: {}}}\n"
+                   "  pipe: {{shape: {{tube: [0.2, 0.18, 0.1]}}, mass: 1, inertia: [0.01, 0.01, "
+                   "0.00905], position: [0, 0, 0.1]}}\n"
+                   "contacts: {{default: {{law: {}, friction: 0.3}}}}\n"
+                   "analysis: {{type: dynamics, duration: 0.15 s, step: {} s}}\n",
+                   post, law, step),
+            "m.yaml"));
+        const RunSummary end = s.run();
+        ASSERT_EQ(end.end, RunEnd::finished) << end.message;
+        EXPECT_NEAR(s.body("pipe").r.z(), 0.1 - 0.5 * 9.81 * 0.0225, 1e-9);
       }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/geometry/triangle_tree.hpp>
 
 namespace polhode {
 
@@ -199,37 +200,29 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     }
     if (p.listed || p.sensor) continue;
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
-    const Vec3 &n = p.normal_n, &c = p.place_n;
-    const Vec3 arm_a = c - a.r_n, arm_b = c - b.r_n;
-    const Vec3 velocity =
-        relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b);
-    const double w = n.dot(velocity);
+    const bool acted = !p.data.history.impulse.isZero(0.0) && before == 0;
+    ImpulsePoint point;
+    point.gap = p.gap_n;
+    point.normal = p.normal_n;
+    point.place = p.place_n;
+    const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
+    if (p.data.pair.kind == GapKind::edge_edge) {
+      if (!acted && least_gap_at_end(p, a, b) > 0.0) continue;
+      Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
+      if (!mend_edges(p.data, a, b, g)) continue;
+      point.gap = g.distance;
+      point.normal = value(g.normal);
+      point.place = value(g.point);
+    }
+    const Vec3 &n = point.normal, arm_a = point.place - a.r_n, arm_b = point.place - b.r_n;
+    point.velocity = relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b);
+    const double w = point.rate = n.dot(point.velocity);
     // Either of them may be stopped by another contact.
     const double of_a = n.dot(a.u + a.theta.cross(arm_a)), of_b = n.dot(b.u + b.theta.cross(arm_b));
     const double way = std::min({of_a - of_b, of_a, -of_b});
-    const double least = least_exit_speed(p.gap_n, w, p.restitution, dt, slow);
-    const bool acted = !p.data.history.impulse.isZero(0.0) && before == 0;
+    const double least = least_exit_speed(point.gap, w, p.restitution, dt, slow);
     if (!acted && 2.0 * way / dt - w >= least && !rolls_in(i, a, b)) continue;
-    ImpulsePoint point;
-    point.gap = p.gap_n;
-    point.rate = w;
-    point.velocity = velocity;
-    point.normal = n;
-    point.place = c;
-    if (!balls_[i].holds) {
-      const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
-      if (weight_of(p.data, at_a, at_b) < kMinWeight) continue;
-      if (p.data.pair.kind == GapKind::edge_edge) {
-        Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
-        if (!mend_edges(p.data, a, b, g)) continue;
-        point.gap = g.distance;
-        point.normal = value(g.normal);
-        point.place = value(g.point);
-        point.velocity = relative(a.v_n, a.Lambda_n * a.W_n, point.place - a.r_n, b.v_n,
-                                  b.Lambda_n * b.W_n, point.place - b.r_n);
-        point.rate = point.normal.dot(point.velocity);
-      }
-    }
+    if (!balls_[i].holds && weight_of(p.data, at_a, at_b) < kMinWeight) continue;
     point.a = shapes_[p.a].body;
     point.b = shapes_[p.b].body;
     point.restitution = p.restitution;
@@ -239,7 +232,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     point.torsion = f.torsion;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
-    point.size = p.data.length;
+    point.size = std::min(p.data.a->detail, p.data.b->detail);
     point.number = i;
     p.listed = true;
     if (p.data.b->solid == Solid::surface) {
@@ -286,11 +279,13 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     const Vec3 n = value(g.normal);
     // A point that slides off its triangle belongs to the next one, not to the edge between them.
     const bool leaves = p.data.pair.kind == GapKind::point_triangle && g.feature != 0;
-    if (!leaves && n.dot(p.normal_n) > kPasses) {
+    // The side of edges that have passed through each other follows from their outward sides.
+    const Vec3 before = p.data.pair.kind == GapKind::edge_edge ? at.normal : p.normal_n;
+    if (!leaves && n.dot(before) > kPasses) {
       at.normal = n.normalized();
       at.place = value(g.point);
     } else {
-      at.normal = p.normal_n;
+      at.normal = before;
       at.place = p.place_n + 0.5 * a.u;
       continue;
     }
@@ -317,7 +312,8 @@ std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> 
     if (p.data.pair.kind != GapKind::edge_edge || p.sensor) continue;
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
     const double least = least_gap_at_end(p, a, b);
-    if (least > 0.0 || p.gap_n - least < kFast * p.data.length) continue;
+    if (least > 0.0 || p.gap_n - least < kFast * std::min(p.data.a->detail, p.data.b->detail))
+      continue;
     const Placement<double> from_a(a.r_n, a.Lambda_n, 0), from_b(b.r_n, b.Lambda_n, 6),
         to_a(a.r_n1, a.Lambda_n1, 0), to_b(b.r_n1, b.Lambda_n1, 6);
     const Shape &A = *p.data.a, &B = *p.data.b;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances between a part of a round solid and features with faces. They are smooth, since one of
-// both is strictly convex and the other convex.
+// both is strictly convex and the other convex; the rim of a tube is an exception, see ring.hpp.
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -29,9 +30,9 @@ constexpr int kPlaces = 32;
 
 /// Feature of b nearest to a part.
 struct Nearest {
-  enum Kind { none, face, edge, corner } kind = none;
+  enum Kind { none, face, edge, corner, overlap } kind = none;
   int index = 0;
-  double t = 0.0;  ///< Along an edge.
+  double t = 0.0;  ///< Along an edge; with an overlap, the angle of a place on the ring.
   double distance = std::numeric_limits<double>::infinity();
 };
 
@@ -61,12 +62,10 @@ class SeenPart {
     Vec3 n = b.planes[triangle].normal;
     double height = n.dot(centre_ - p);
     if (sides == 2 && height < 0.0) n = -n, height = -height;
-    const Vec3 local = half_.cwiseProduct(axes_.transpose() * n);
-    const double reach = local.norm(), distance = height - reach;
-    if (height < 0.0) return distance;
-    const Vec3 to_nearest = -axes_ * half_.cwiseProduct(local) / reach;
+    Vec3 to_nearest;
+    const double reach = extent(n, to_nearest), distance = height - reach;
     // The lowest place of a ring below the plane may lie beyond the solid, within the ring.
-    if (ring_ && distance < 0.0) return distance;
+    if (height < 0.0 || (ring_ && distance < 0.0)) return distance;
     const Vec3 x = centre_ + std::min(1.0, height / reach) * to_nearest;
     const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
     const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
@@ -77,26 +76,19 @@ class SeenPart {
     return distance;
   }
 
-  /// Whether a ring and the convex polyhedron b overlap: arcs of it lie below all planes.
-  [[nodiscard]] bool reaches_into(const Shape& b) const {
-    if (std::any_of(b.planes.begin(), b.planes.end(), [&](const auto& plane) {
-          return plane.normal.dot(centre_) -
-                     half_.cwiseProduct(axes_.transpose() * plane.normal).norm() >=
-                 plane.offset;
-        }))
-      return false;
+  /// Overlap of a ring and the convex polyhedron b: the face through which the arcs of it that lie
+  /// below all planes leave on the shortest way, and the angle of their deepest place.
+  [[nodiscard]] Nearest overlap(const Shape& b) const {
     using Arc = std::pair<double, double>;
     constexpr double kTurn = 2.0 * std::numbers::pi;
     std::vector<Arc> inside{{0.0, kTurn}}, left;
     for (const auto& plane : b.planes) {
-      const Vec3 n = half_.x() * (axes_.transpose() * plane.normal);
-      const double height = plane.normal.dot(centre_) - plane.offset,
-                   most = std::hypot(n.x(), n.y());
-      if (height >= most) return false;
-      if (height <= -most) continue;
+      const Height h = height_above(plane);
+      if (h.middle >= h.most) return {};
+      if (h.middle <= -h.most) continue;
       // Angles of negative height.
-      const double half = std::acos(-height / most);
-      double first = std::atan2(n.y(), n.x()) + half;
+      const double half = std::acos(-h.middle / h.most);
+      double first = h.highest + half;
       first -= kTurn * std::floor(first / kTurn);
       const double last = first + kTurn - 2.0 * half;
       left.clear();
@@ -107,9 +99,23 @@ class SeenPart {
           if (low < high) left.emplace_back(low, high);
         }
       inside.swap(left);
-      if (inside.empty()) return false;
+      if (inside.empty()) return {};
     }
-    return true;
+    Nearest best;
+    best.distance = -std::numeric_limits<double>::infinity();
+    for (int f = 0; f < static_cast<int>(b.planes.size()); ++f) {
+      const Height h = height_above(b.planes[f]);
+      double lowest = std::numeric_limits<double>::infinity(), angle = 0.0;
+      for (const Arc& arc : inside)
+        for (double at : {arc.first, arc.second, h.highest + 0.5 * kTurn}) {
+          at = arc.first + std::remainder(at - arc.first - 0.5 * kTurn, kTurn) + 0.5 * kTurn;
+          if (at > arc.second) at = arc.second;
+          const double height = h.middle + h.most * std::cos(at - h.highest);
+          if (height < lowest) lowest = height, angle = at;
+        }
+      if (lowest > best.distance) best = {Nearest::overlap, f, angle, lowest};
+    }
+    return best;
   }
 
   /// Lower bound of the distance: convex bodies lie behind their tangent planes, so no point of a
@@ -125,11 +131,10 @@ class SeenPart {
   /// Distance of a point from the part. @param n  Direction in which it grows, in axes of the part.
   [[nodiscard]] double from(const Vec3& y, Vec3& n) const {
     if (ring_) {
-      const double q = std::hypot(y.x(), y.y());
-      const Vec3 outward = q > 0.0 ? Vec3(y.x() / q, y.y() / q, 0.0) : Vec3(Vec3::UnitX());
+      const Vec3 outward = across(y);
       n = y - half_.x() * outward;
       const double distance = n.norm();
-      n /= distance;
+      n = distance > 0.0 ? Vec3(n / distance) : outward;
       return distance;
     }
     const double root = nearest_on_ellipsoid(half_, y);
@@ -153,60 +158,89 @@ class SeenPart {
       return n.dot(V);
     };
     // The distance from a convex part is convex along the edge: its slope changes sign once.
-    double low = 0.0, high = 1.0, d_low = 0.0, d_high = 0.0;
-    if (ring_) around_minimum(X, V, middle, at, low, high);
-    double s_low = at(low, d_low), s_high = at(high, d_high);
-    const auto take = [&](Nearest::Kind kind, int which, double t, double distance) {
-      if (distance < best.distance) best = {kind, which, t, distance};
-    };
-    const auto take_end = [&](double t, double distance) {
-      if (t == 0.0 || t == 1.0)
-        take(Nearest::corner, t == 0.0 ? b.edges[index].i : b.edges[index].j, 0.0, distance);
-      else
-        take(Nearest::edge, index, t, distance);
-    };
-    if (s_low >= 0.0) return take_end(low, d_low);
-    if (s_high <= 0.0) return take_end(high, d_high);
-    double t = 0.5, distance = 0.0;
-    const double enough = 1e-13 * v.norm();
-    for (int k = 0, side = 0; k < 100 && high - low > 1e-15; ++k) {  // Illinois
-      t = k % 8 == 7 ? 0.5 * (low + high) : (low * s_high - high * s_low) / (s_high - s_low);
-      const double s = at(t, distance);
-      if (std::abs(s) < enough) break;
-      if (s < 0.0) {
-        low = t, s_low = s;
-        if (side == -1) s_high *= 0.5;
-        side = -1;
-      } else {
-        high = t, s_high = s;
-        if (side == 1) s_low *= 0.5;
-        side = 1;
+    const auto refine = [&](double low, double high) {
+      double d_low = 0.0, d_high = 0.0;
+      double s_low = at(low, d_low), s_high = at(high, d_high);
+      const auto take = [&](double t, double distance) {
+        if (!(distance < best.distance)) return;
+        if (t == 0.0 || t == 1.0)
+          best = {Nearest::corner, t == 0.0 ? b.edges[index].i : b.edges[index].j, 0.0, distance};
+        else
+          best = {Nearest::edge, index, t, distance};
+      };
+      if (s_low >= 0.0) return take(low, d_low);
+      if (s_high <= 0.0) return take(high, d_high);
+      double t = 0.5 * (low + high), distance = 0.0;
+      const double enough = 1e-13 * v.norm();
+      for (int k = 0, side = 0; k < 100 && high - low > 1e-15; ++k) {  // Illinois
+        t = k % 8 == 7 ? 0.5 * (low + high) : (low * s_high - high * s_low) / (s_high - s_low);
+        const double s = at(t, distance);
+        if (std::abs(s) < enough) break;
+        if (s < 0.0) {
+          low = t, s_low = s;
+          if (side == -1) s_high *= 0.5;
+          side = -1;
+        } else {
+          high = t, s_high = s;
+          if (side == 1) s_low *= 0.5;
+          side = 1;
+        }
       }
-    }
-    take(Nearest::edge, index, t, distance);
+      take(t, distance);
+    };
+    ring_ ? around_minima(X, V, middle, at, refine) : refine(0.0, 1.0);
   }
 
  private:
-  /// Range of an edge around its place nearest to a ring. The nearest place is no farther from the
-  /// centre than that nearest to the centre plus two radii.
-  template <class At>
-  void around_minimum(const Vec3& X, const Vec3& V, double middle, const At& at, double& low,
-                      double& high) const {
+  /// Height of a ring above a plane: middle + most·cos(angle − highest).
+  struct Height {
+    double middle, most, highest;
+  };
+  template <class Plane>
+  [[nodiscard]] Height height_above(const Plane& plane) const {
+    const Vec3 n = half_.x() * (axes_.transpose() * plane.normal);
+    return {plane.normal.dot(centre_) - plane.offset, std::hypot(n.x(), n.y()),
+            std::atan2(n.y(), n.x())};
+  }
+
+  /// Unit vector of a direction across the axis of a ring, in axes of the part.
+  [[nodiscard]] static Vec3 across(const Vec3& y) {
+    const double q = std::hypot(y.x(), y.y());
+    return q > 0.0 ? Vec3(y.x() / q, y.y() / q, 0.0) : Vec3(Vec3::UnitX());
+  }
+
+  /// Extent of the part along n. @param to_nearest  From its centre to its lowest point.
+  [[nodiscard]] double extent(const Vec3& n, Vec3& to_nearest) const {
+    const Vec3 along = axes_.transpose() * n;
+    if (ring_) {
+      to_nearest = -half_.x() * (axes_ * across(along));
+      return half_.x() * std::hypot(along.x(), along.y());
+    }
+    const Vec3 local = half_.cwiseProduct(along);
+    const double reach = local.norm();
+    to_nearest = -axes_ * half_.cwiseProduct(local) / reach;
+    return reach;
+  }
+
+  /// Calls refine(low, high) for the ranges of an edge around the minima of its distance from a
+  /// ring. The nearest place is no farther from the centre than that nearest to the centre plus two
+  /// radii.
+  template <class At, class Refine>
+  void around_minima(const Vec3& X, const Vec3& V, double middle, const At& at,
+                     const Refine& refine) const {
     const double near = (X + middle * V).norm(), far = near + 2.0 * half_.x(),
                  along = std::sqrt(far * far - near * near) / V.norm();
     const double first = std::max(0.0, middle - along), last = std::min(1.0, middle + along);
     const auto place = [&](int k) {
       return k == kPlaces ? last : first + (last - first) * k / kPlaces;
     };
-    int best = 0;
-    double least = std::numeric_limits<double>::infinity();
+    std::array<double, kPlaces + 1> distance{};
+    for (int k = 0; k <= kPlaces; ++k) at(place(k), distance[k]);
     for (int k = 0; k <= kPlaces; ++k) {
-      double distance = 0.0;
-      at(place(k), distance);
-      if (distance < least) least = distance, best = k;
+      const int before = std::max(0, k - 1), after = std::min(kPlaces, k + 1);
+      if (distance[k] <= distance[before] && distance[k] <= distance[after])
+        refine(place(before), place(after));
     }
-    low = place(std::max(0, best - 1));
-    high = place(std::min(kPlaces, best + 1));
   }
 
   bool ring_;
@@ -293,7 +327,11 @@ Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part
     inside = inside && b.planes[t].normal.dot(part.centre()) < b.planes[t].offset;
     if (distance > shallowest.distance) shallowest = {Nearest::face, t, 0.0, distance};
   }
-  if (part.ring() ? part.reaches_into(b) : inside) return shallowest;
+  if (part.ring()) {
+    if (const Nearest into = part.overlap(b); into.kind != Nearest::none) return into;
+  } else if (inside) {
+    return shallowest;
+  }
   if (best.kind == Nearest::face) return best;
   for (int e = 0; e < static_cast<int>(b.edges.size()); ++e) part.edge(b, e, best);
   return best;
@@ -422,6 +460,12 @@ Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const 
       const bool behind =
           b.solid == Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
       return over_face(part, b, n.index, behind, at_a, at_b);
+    }
+    if (n.kind == Nearest::overlap) {
+      const Vec3 place = part.centre + part.half.x() * (std::cos(n.t) * part.axes.col(0) +
+                                                        std::sin(n.t) * part.axes.col(1));
+      return over_plane(at_a.point(place), at_b.point(b.corners[b.triangles[n.index][0]]),
+                        at_b.vector(b.planes[n.index].normal), part.rounding, b.rounding);
     }
     if (n.kind == Nearest::edge) return over_edge(part, b, n.index, n.t, at_a, at_b);
     return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),

@@ -245,6 +245,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
 /// followed by steps of its own size. A single point also stays clear of b as long as it is in
 /// front of the plane that separates both now and turns with b: it may roll or slide along a
 /// turning face.
+/// A rim around a feature, as the inner side of a tube, is approached by all of the motion.
 /// @eq{contact-filter}
 double ContactSet::advance(const Followed& followed, std::span<const BodyStep> steps,
                            std::span<const Vec6> increments, double most) {
@@ -261,7 +262,8 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const GapKind kind = p.data.pair.kind;
   const bool in_tube =
       (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
-  const Shape part_a = has_part(kind) ? part_of(*p.data.a, p.data.pair.i) : Shape{};
+  const bool ring = has_part(kind) && is_tube(*p.data.a);
+  const Shape rim = ring ? part_of(*p.data.a, p.data.pair.i) : Shape{};
   std::array<Vec3, 2> ends;
   const bool single = !in_tube && few_points(*p.data.a, p.data.pair, true, ends) == 1;
   const PathSeenFromB path{a, b, x_a, x_b, single ? ends[0] : Vec3::Zero()};
@@ -280,8 +282,9 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   for (int k = 0; k < 200; ++k) {
     const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
     const Vec3 n = value(g.normal);
-    const bool hollow = in_tube || !lies_in_front(part_a, a.r_n1 + done * x_a.head<3>(),
-                                                  Mat3(cay(done * x_a.tail<3>()) * a.Lambda_n1), g);
+    const bool hollow =
+        in_tube || (ring && !lies_in_front(rim, a.r_n1 + done * x_a.head<3>(),
+                                           Mat3(cay(done * x_a.tail<3>()) * a.Lambda_n1), g));
     double speed = hollow ? relative.norm() : std::max(0.0, -n.dot(relative));
     std::array<Vec3, 2> few;
     const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,

@@ -14,13 +14,20 @@ namespace polhode {
 namespace {
 
 constexpr int kMaxIterations = 120;
+/// Number of iterations without an error below this part of the smallest one, which end the search.
+constexpr int kPatience = 30;
+constexpr double kProgress = 0.9;
+/// Error of speeds that is round-off, as a part of the largest.
+constexpr double kRoundedSpeed = 1e-14;
 /// Halvings of a step that exceeds the merits of previous iterates.
 constexpr LineSearchRule kHalve{0.0, 8, 0.5, 0.5, 0.5};
 /// Number of previous iterates whose merit must not be exceeded; it may rise above the last one.
 constexpr std::size_t kLookBack = 5;
-/// Part of the diagonal of D added to it in the first proximal iteration, so that impulses of
-/// points that share a load are unique, and its reduction in each further one.
-constexpr double kProximal = 1e-3, kLessProximal = 0.1;
+/// Part ε_1 of the diagonal of D that is added to it in the first proximal iteration, so that
+/// impulses of points that share a load are unique.
+constexpr double kProximal = 1e-3;
+/// Factor of that part in each further iteration.
+constexpr double kLessProximal = 0.1;
 
 using Frame = std::array<Vec3, 3>;  ///< Normal and two tangents.
 
@@ -40,6 +47,7 @@ class Solution {
     p_start_.resize(n);
     y_start_.resize(n);
     wanted_.resize(n);
+    per_speed_.setOnes(n);
     directions_.reserve(static_cast<std::size_t>(n));
     for (const ProjectedGaussSeidel::Point& p : sweeps.points) {
       const Vec3 t = p.normal.unitOrthogonal();
@@ -53,6 +61,8 @@ class Solution {
       const ProjectedGaussSeidel::Point& p = sweeps.points[t.point];
       for (const Vec3& e : frames_[t.point])
         add({p.a, p.b, Vec3::Zero(), e, e}, e.dot(t.impulse), e.dot(t.wanted));
+      per_speed_.segment<3>(static_cast<Eigen::Index>(directions_.size()) - 3)
+          .setConstant(t.length);
     }
     D_.resize(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
@@ -62,23 +72,35 @@ class Solution {
     p_ = centre_ = p_start_;
   }
 
-  /// Proximal iterations: each solves the equations with a small multiple of the change of impulses
-  /// since the last one added to the speeds.
-  bool find(double enough) {
+  /// Newton's method inside proximal iterations, which add ε_i D_kk times the change of an impulse
+  /// since the last one to its speed. @returns whether an iterate has reached `enough`.
+  bool find(double enough, double exact) {
+    exact = std::max(exact,
+                     kRoundedSpeed * y_start_.cwiseProduct(per_speed_).lpNorm<Eigen::Infinity>());
     std::array<double, kLookBack> merits{};
     merits.fill(std::numeric_limits<double>::infinity());
-    for (int it = 0; it < kMaxIterations; ++it) {
+    Vec best = p_;
+    double least = std::numeric_limits<double>::infinity();
+    for (int it = 0, last = 0; it < kMaxIterations && it - last < kPatience; ++it) {
       const double merit = residual(p_, true);
-      if (!std::isfinite(merit)) return false;
-      if (std::sqrt(merit) <= enough) {
-        if (proximal_.cwiseProduct(p_ - centre_).lpNorm<Eigen::Infinity>() <= enough) return true;
+      if (!std::isfinite(merit)) break;
+      const double left =
+          proximal_.cwiseProduct(p_ - centre_).cwiseProduct(per_speed_).lpNorm<Eigen::Infinity>();
+      if (const double error = std::max(std::sqrt(merit), left); error < kProgress * least) {
+        least = error;
+        best = p_;
+        last = it;
+      }
+      if (least <= exact) break;
+      if (std::sqrt(merit) <= exact) {
         next_proximal_iteration();
         merits.fill(std::numeric_limits<double>::infinity());
+        last = it;
         continue;
       }
       merits[static_cast<std::size_t>(it) % kLookBack] = merit;
       const Vec step = J_.partialPivLu().solve(-F_);
-      if (!step.allFinite()) return false;
+      if (!step.allFinite()) break;
       const double allowed = *std::max_element(merits.begin(), merits.end());
       const Vec start = p_;
       const auto apply = [&](double part) {
@@ -87,7 +109,8 @@ class Solution {
       };
       search_along(kHalve, allowed, 1.0, apply, [&] { return residual(p_, false); });
     }
-    return false;
+    p_ = best;
+    return least <= enough;
   }
 
   /// Writes impulses and speeds back to the bodies.
@@ -189,7 +212,7 @@ class Solution {
     using Part = Eigen::Matrix<double, N, 1>;
     const Part z = p.segment<N>(t) - free * off_.segment<N>(t);
     const double limit = coefficient * pressed_[point], size = z.norm();
-    const bool sticks = pressed_[point] > 0.0 && size <= limit;
+    const bool sticks = limit > 0.0 && size <= limit;
     F_.segment<N>(t) = p.segment<N>(t);
     if (sticks)
       F_.segment<N>(t) -= z;
@@ -217,15 +240,17 @@ class Solution {
   std::vector<Direction> directions_;
   Eigen::MatrixXd D_, J_;
   Vec p_start_, y_start_, wanted_, p_, F_, off_;
-  Vec proximal_, centre_;  ///< Speed by a change of impulses since the last proximal iteration.
-  Vec pressed_;            ///< Normal impulses inside the cone.
+  Vec per_speed_;  ///< Lengths that turn angular speeds into speeds; 1 for points.
+  Vec proximal_;   ///< ε_i D_kk, in D_ too.
+  Vec centre_;     ///< Impulses after the last proximal iteration.
+  Vec pressed_;    ///< Normal impulses, projected.
 };
 
 }  // namespace
 
-bool solve_impulses(ProjectedGaussSeidel& sweeps, double enough) {
+bool solve_impulses(ProjectedGaussSeidel& sweeps, double enough, double exact) {
   Solution solution(sweeps);
-  if (!solution.find(enough)) return false;
+  if (!solution.find(enough, exact)) return false;
   solution.give_back();
   return true;
 }

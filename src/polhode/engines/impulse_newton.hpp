@@ -13,7 +13,8 @@ inline constexpr int kMaxDensePoints = 100;
 /// them unchanged if it does not converge. @eq{nonsmooth-projection}
 /// @param sweeps  Prepared.
 /// @param enough  Tolerance of target speeds [m/s].
+/// @param exact   Smaller tolerance that is aimed at, as far as round-off permits [m/s].
 /// @returns whether it converged.
-bool solve_impulses(ProjectedGaussSeidel& sweeps, double enough);
+bool solve_impulses(ProjectedGaussSeidel& sweeps, double enough, double exact);
 
 }  // namespace polhode

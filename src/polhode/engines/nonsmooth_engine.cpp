@@ -21,21 +21,22 @@ constexpr int kMaxRepeats = 60;
 /// Depth of an overlap, as a part of the smaller size, that no step with unconverged impulses may
 /// produce.
 constexpr double kPressedIn = 0.1;
-/// Increase of a penetration, as that part, above which a step with converged impulses is too long
-/// for the motion of the contact point.
+/// Increase of a penetration, as a part of the smaller size, above which a step with converged
+/// impulses is too long for the motion of the contact point.
 constexpr double kSinks = 3e-3;
 /// Change of speeds in the last sweep over few points, relative to gravity's speed increment in a
 /// step, above which a step fails.
 constexpr double kFarOff = 1.0;
 /// Largest number of solutions of a step that would gain energy, each with more points held back.
 constexpr int kMaxHeldBack = 3;
-/// Largest number of sweeps in a step, unless given: as many as kAffordable permits for their
-/// points, which matters for few bodies with large mass ratios or elastic impacts.
+/// Largest number of sweeps before Newton's method, unless given.
 constexpr int kUsualSweeps = 100;
+/// Largest number of sweeps in a step times that of points and turns, unless the sweeps are given
+/// or fewer than the usual ones: few bodies with large mass ratios or elastic impacts need many.
 constexpr int kAffordable = 200000;
-/// Number of points and turns that Newton's method solves in any case, and its tolerance relative
-/// to that of sweeps: it converges quadratically.
+/// Number of points and turns for which Newton's method also follows sweeps that have converged.
 constexpr int kFew = 20;
+/// Tolerance of Newton's method, which converges quadratically, as a part of that of sweeps.
 constexpr double kExact = 1e-6;
 /// Reference speed of tolerances without gravity: this part of the fastest speed.
 constexpr double kPartOfSpeed = 1e-2;
@@ -200,14 +201,16 @@ void NonsmoothEngine::set_up(double dt, bool first) {
 /// Largest number of sweeps in a step.
 int NonsmoothEngine::most_sweeps() const {
   if (options_.sweeps > 0) return options_.sweeps;
-  return std::max(kUsualSweeps, kAffordable / std::max(1, point_count()));
+  return std::max(kUsualSweeps, kAffordable / std::max(1, unknowns()));
 }
 
 /// Gauss-Seidel sweeps. If the usual number does not suffice, Newton's method continues from them
-/// for few points; if it fails, more sweeps follow.
-void NonsmoothEngine::sweep() {
+/// for few points; if it fails, more sweeps follow. @returns whether the first sweep changed
+/// nothing.
+bool NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
   bool exact = false;
+  double first_change = -1.0;
   const bool balls = SphereGaussSeidel::suit(sweeps_);
   const auto run = [&](int most) {
     balls ? balls_.take(sweeps_) : sweeps_.prepare();
@@ -218,13 +221,14 @@ void NonsmoothEngine::sweep() {
       search_.change = reference_ > 0.0 ? change / reference_ : change;
       search_.converged = change <= enough;
       exact = change <= kExact * enough;
+      if (first_change < 0.0) first_change = change;
     } while (!search_.converged && search_.sweeps < most);
     if (balls) balls_.give_back(sweeps_);
   };
   run(options_.sweeps > 0 ? options_.sweeps : kUsualSweeps);
   if (search_.converged ? !exact && unknowns() <= kFew : is_small()) {
     if (balls) sweeps_.prepare();
-    if (solve_impulses(sweeps_, kExact * enough)) search_.converged = true;
+    if (solve_impulses(sweeps_, enough, kExact * enough)) search_.converged = true;
   }
   if (!search_.converged && search_.sweeps < most_sweeps()) run(most_sweeps());
   for (int k = 0; k < point_count(); ++k) {
@@ -232,6 +236,7 @@ void NonsmoothEngine::sweep() {
     points_[k].impulse = p.normal_impulse * p.normal + p.friction_impulse;
   }
   for (const ProjectedGaussSeidel::Turn& t : sweeps_.turns) points_[t.point].turning = t.impulse;
+  return first_change <= enough;
 }
 
 /// Search for the impulses. The first round starts from the contact-free motion and from the
@@ -255,12 +260,11 @@ bool NonsmoothEngine::search(const State& state, const Trial& trial) {
     if (points_.empty()) return true;
     places_.clear();
     for (int k = 0; k < known; ++k) places_.push_back(points_[k].place);
-    const int before = search_.sweeps;
     impulsive_->place_points(steps_, points_);
     set_up(context.dt, round == 0);
-    sweep();
+    const bool unchanged = sweep();
     if (!move(state, trial)) return false;
-    if (round > 0 && found == 0 && search_.sweeps <= before + 1) break;
+    if (round > 0 && found == 0 && (unchanged || !search_.converged)) break;
   }
   return true;
 }
@@ -295,9 +299,10 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
                              : format("body '{}'", system_->bodies()[body].name);
     };
     done.reason = format("{1} and {0} would overlap", name(overlap->first), name(overlap->second));
-    if (!search_.converged)
-      done.reason +=
-          format(", as {} sweeps did not converge: raise contacts.sweeps", search_.sweeps);
+    done.reason +=
+        search_.converged
+            ? std::string(": take shorter steps")
+            : format(", as {} sweeps did not converge: raise contacts.sweeps", search_.sweeps);
     return done;
   }
   for (int b = 0; b < bodies_; ++b) {
@@ -338,6 +343,7 @@ int NonsmoothEngine::pressed_in(const StepContext& context) {
   impulsive_->find_points(steps_, context, points_);
   for (int k = known; k < point_count(); ++k)  // found too late to act
     points_[k].impulse = points_[k].turning = Vec3::Zero();
+  impulsive_->place_points(steps_, std::span(points_).subspan(static_cast<std::size_t>(known)));
   losses_.resize(points_.size());
   int worst = -1;
   double deepest = 0.0;

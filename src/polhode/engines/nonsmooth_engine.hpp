@@ -42,7 +42,7 @@ class NonsmoothEngine final : public NewtonEngine {
   bool move(const State& state, const Trial& trial);
   [[nodiscard]] bool search(const State& state, const Trial& trial);
   void set_up(double dt, bool first);
-  void sweep();
+  bool sweep();
   [[nodiscard]] int most_sweeps() const;
   /// Number of points and turns.
   [[nodiscard]] int unknowns() const {

@@ -13,7 +13,7 @@ namespace polhode {
 
 /// Termination of the impulse iteration of a step.
 struct ImpulseOptions {
-  int sweeps = 0;           ///< Largest number, over all points; 0: as accuracy and cost require.
+  int sweeps = 0;           ///< Largest number; 0: 100, or 200,000 over the number of points.
   double tolerance = 1e-3;  ///< Change of a point's speed in a sweep, as part of |g| Δt [-].
 };
 
@@ -67,7 +67,7 @@ class ImpulsiveContacts {
   /// Gap of a point at the end of the steps [m].
   [[nodiscard]] virtual double gap_after(std::span<const BodyStep> steps,
                                          const ImpulsePoint& point) const = 0;
-  /// Two bodies with an edge that passes into the other one in fast steps.
+  /// Two bodies, an edge of one of which enters the other in a fast step.
   [[nodiscard]] virtual std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const = 0;
   /// Commits an accepted step like BodyContacts::commit().

@@ -26,7 +26,8 @@ struct RoundFormulas {
 };
 
 /// A kind of convex solid with a smooth surface that is not a polyhedron. It is an ellipsoid, or
-/// has `flat_ends`; other code knows a kind by these and by this record alone.
+/// has `flat_ends`; other code knows a kind by these and by this record alone. The rim of a tube is
+/// no such kind, but has a record, see ring.hpp.
 struct RoundSolid {
   std::string_view name;  ///< In shape_kinds().
   /// @param sizes  Those of shape_kinds(), checked.
