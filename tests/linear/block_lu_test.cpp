@@ -70,7 +70,9 @@ TEST(BlockLu, LeavesOutFusedMultiplyAddIfAsked) {
   };
   const Vec with = solution(true), without = solution(false);
   EXPECT_LT((with - without).lpNorm<Eigen::Infinity>(), 1e-10 * without.lpNorm<Eigen::Infinity>());
+#ifdef NDEBUG  // Compilers fuse in optimised code only.
   EXPECT_NE(with, without);
+#endif
 }
 
 }  // namespace
