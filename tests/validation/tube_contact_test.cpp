@@ -169,6 +169,21 @@ INSTANTIATE_TEST_SUITE_P(Steps, TubeOnAFloor, testing::ValuesIn(floors_and_steps
                                   std::to_string(std::lround(1e6 * given.param.dt)) + "_us";
                          });
 
+/// A pipe of 1 kg with a wall of 10 mm and a fixed body of this shape.
+/// @param motion  Keys of the pipe but shape and mass. @param contact  Keys of contacts.default.
+Simulation pipe_and(const std::string& shape, double length, const std::string& motion,
+                    const std::string& contact, double duration, double step) {
+  return Simulation(read_model_text(
+      format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+             "  other: {{fixed: true, shape: {}}}\n"
+             "  pipe: {{shape: {{tube: [0.2, 0.18, {}]}}, mass: 1, inertia: [0.01, 0.01, "
+             "0.00905], {}}}\n"
+             "contacts: {{default: {{{}}}}}\n"
+             "analysis: {{type: dynamics, duration: {} s, step: {} s}}\n",
+             shape, length, motion, contact, duration, step),
+      "m.yaml"));
+}
+
 /// Speed of a pipe that rolls on its rims. As a polygon it would lose a quarter of it in a second.
 TEST(TubeContact, RollsFreelyByEitherLaw) {
   const std::string row = "[0, 0, 0, 0, 0, 0, 0]";
@@ -180,16 +195,10 @@ TEST(TubeContact, RollsFreelyByEitherLaw) {
       for (const double step : {1e-2, 5e-3, 1e-3}) {
         if (law == "nonsmooth" && floor.find("height_field") != std::string::npos) continue;
         SCOPED_TRACE(format("{} by {} at {} s", floor, law, step));
-        Simulation s(read_model_text(
-            format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
-                   "  floor: {{fixed: true, shape: {}}}\n"
-                   "  pipe: {{shape: {{tube: [0.2, 0.18, 0.3]}}, mass: 1, inertia: [0.01, 0.01, "
-                   "0.00905], orientation: {{axis: x, angle: 90 deg}}, position: [0, 0, 0.1], "
-                   "velocity: [1, 0, 0], angular_velocity: [0, 10, 0]}}\n"
-                   "contacts: {{default: {{law: {}, friction: 0.3}}}}\n"
-                   "analysis: {{type: dynamics, duration: 1 s, step: {} s}}\n",
-                   floor, law, step),
-            "m.yaml"));
+        Simulation s = pipe_and(floor, 0.3,
+                                "orientation: {axis: x, angle: 90 deg}, position: [0, 0, 0.1], "
+                                "velocity: [1, 0, 0], angular_velocity: [0, 10, 0]",
+                                format("law: {}, friction: 0.3", law), 1.0, step);
         const RunSummary end = s.run();
         ASSERT_EQ(end.end, RunEnd::finished) << end.message;
         const double error = law == "barrier" ? 1e-6 : 10.0 * step * step;
@@ -217,15 +226,8 @@ TEST(TubeContact, FallsOverAPost) {
     for (const std::string law : {"barrier", "nonsmooth"})
       for (const double step : {5e-3, 1e-3}) {
         SCOPED_TRACE(format("{} by {} at {} s", post, law, step));
-        Simulation s(read_model_text(
-            format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
-                   "  post: {{fixed: true, shape: {}}}\n"
-                   "  pipe: {{shape: {{tube: [0.2, 0.18, 0.1]}}, mass: 1, inertia: [0.01, 0.01, "
-                   "0.00905], position: [0, 0, 0.1]}}\n"
-                   "contacts: {{default: {{law: {}, friction: 0.3}}}}\n"
-                   "analysis: {{type: dynamics, duration: 0.15 s, step: {} s}}\n",
-                   post, law, step),
-            "m.yaml"));
+        Simulation s = pipe_and(post, 0.1, "position: [0, 0, 0.1]",
+                                format("law: {}, friction: 0.3", law), 0.15, step);
         const RunSummary end = s.run();
         ASSERT_EQ(end.end, RunEnd::finished) << end.message;
         EXPECT_NEAR(s.body("pipe").r.z(), 0.1 - 0.5 * 9.81 * 0.0225, 1e-9);
@@ -236,29 +238,16 @@ TEST(TubeContact, FallsOverAPost) {
 /// touches neither.
 TEST(TubeContact, LeavesItsMouthOpen) {
   for (const double step : {5e-3, 1e-3, 2e-4}) {
-    Simulation s(read_model_text(
-        format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
-               "  bar: {{fixed: true, shape: {{box: [0.02, 0.02, 2]}}, position: [0.07, 0, 0]}}\n"
-               "  pipe: {{shape: {{tube: [0.2, 0.18, 0.3]}}, mass: 1, inertia: [0.01, 0.01, "
-               "0.00905], position: [0, 0, 0.5]}}\n"
-               "contacts: {{default: {{friction: 0}}}}\n"
-               "analysis: {{type: dynamics, duration: 0.3 s, step: {} s}}\n",
-               step),
-        "m.yaml"));
+    const std::string falls = "position: [0, 0, 0.5]";
+    Simulation s = pipe_and("{box: [0.02, 0.02, 2], position: [0.07, 0, 0]}", 0.3, falls,
+                            "friction: 0", 0.3, step);
     const RunSummary end = s.run();
     ASSERT_EQ(end.end, RunEnd::finished) << step;
     EXPECT_NEAR(s.body("pipe").r.z(), 0.5 - 0.5 * 9.81 * 0.09, 1e-9) << step;
     EXPECT_EQ(end.contacts->touching, 0) << step;
-    Simulation t(read_model_text(
-        format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
-               "  crate: {{fixed: true, shape: {{box: [0.4, 0.4, 0.4]}}, orientation: {{axis: [1, "
-               "-1, 0], angle: 0.955316618 rad}}}}\n"
-               "  pipe: {{shape: {{tube: [0.2, 0.18, 0.3]}}, mass: 1, inertia: [0.01, 0.01, "
-               "0.00905], position: [0, 0, 0.5]}}\n"
-               "contacts: {{default: {{friction: 0}}}}\n"
-               "analysis: {{type: dynamics, duration: 0.3 s, step: {} s}}\n",
-               step),
-        "m.yaml"));
+    Simulation t =
+        pipe_and("{box: [0.4, 0.4, 0.4], orientation: {axis: [1, -1, 0], angle: 0.955316618 rad}}",
+                 0.3, falls, "friction: 0", 0.3, step);
     const RunSummary rests = t.run();
     ASSERT_EQ(rests.end, RunEnd::finished) << step << ": " << rests.message;
     // Three edges of the corner, each at √2 of its height from the vertical, meet the inner rim.
