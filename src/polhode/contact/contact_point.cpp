@@ -43,26 +43,10 @@ T fading_quotient(Fade fade, double y_0, const T& y_1) {
 /// A cheap point near the contact at t_n, the origin in which gaps are computed.
 Vec3 near_contact(const PointData& data, const BodyStep& a) {
   const Shape& A = *data.a;
-  switch (data.pair.kind) {
-    case GapKind::point_solid:
-    case GapKind::point_triangle:
-    case GapKind::point_edge:
-    case GapKind::point_corner:
-    case GapKind::point_surface:
-      return a.r_n + a.Lambda_n * A.corners[data.pair.i];
-    case GapKind::edge_edge: {
-      const Shape::Edge& e = A.edges[data.pair.i];
-      return a.r_n + a.Lambda_n * (0.5 * (A.corners[e.i] + A.corners[e.j]));
-    }
-    case GapKind::extreme_plane:
-    case GapKind::part_solid:
-    case GapKind::part_triangle:
-    case GapKind::part_edge:
-    case GapKind::part_corner:
-    case GapKind::part_surface:
-    case GapKind::round_edge:
-    case GapKind::round_round:
-      break;
+  if (is_of_corner(data.pair.kind)) return a.r_n + a.Lambda_n * A.corners[data.pair.i];
+  if (data.pair.kind == GapKind::edge_edge) {
+    const Shape::Edge& e = A.edges[data.pair.i];
+    return a.r_n + a.Lambda_n * (0.5 * (A.corners[e.i] + A.corners[e.j]));
   }
   return a.r_n;
 }

@@ -17,6 +17,9 @@ namespace polhode::contact {
 
 namespace {
 
+/// Whether the shape has a straight side about its axis.
+bool has_side(const Shape& s) { return is_tube(s) || (s.round() && s.flat_ends.size() == 2); }
+
 /// Search for feature pairs with corners and faces of `b` as seen from shape `a`, in body
 /// coordinates of b.
 class Finder {
@@ -47,7 +50,7 @@ class Finder {
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
       if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
-      if (has_rings() && !on_inner_side(a_, i)) continue;
+      if (is_round_tube() && !on_inner_side(a_, i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
@@ -69,11 +72,11 @@ class Finder {
 
   void edges(const Finder& other) {
     for (int i : other.edges_) {
-      if (!a_.edges[i].convex) continue;
+      if (!a_.edges[i].convex || (is_round_tube() && !is_inner_edge(a_, i))) continue;
       const Vec3 p = in_b(a_.corners[a_.edges[i].i]), u = in_b(a_.corners[a_.edges[i].j]) - p;
       if (out_of_ball(p + 0.5 * u, 0.5 * u.norm()) || !in_region({p, p + u})) continue;
       for (int j : edges_) {
-        if (!b_.edges[j].convex) continue;
+        if (!b_.edges[j].convex || (other.is_round_tube() && !is_inner_edge(b_, j))) continue;
         const Vec3 &q = b_.corners[b_.edges[j].i], v = b_.corners[b_.edges[j].j] - q;
         const SegmentsRegion r = nearest_on_segments(p, u, q, v);
         if ((p + r.s * u - q - r.t * v).norm() < reach())
@@ -82,9 +85,9 @@ class Finder {
     }
   }
 
-  /// Adds the pairs of a round side a, or of the outer rims of a tube.
+  /// Adds the pairs of a round side a, or of the outer side and rims of a tube.
   void round() {
-    if (!a_.round() && !stands_on_plane() && !has_rings()) return;
+    if (!a_.round() && !is_tube(a_)) return;
     const bool whole = a_.flat_ends.empty();
     const int parts = whole ? 1 : static_cast<int>(a_.flat_ends.size());
     const Fade fade = whole ? Fade::none : Fade::parallel;
@@ -92,15 +95,17 @@ class Finder {
       for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, 1.0, fade});
       return;
     }
-    if (b_.round()) {
-      if (!swapped_) push({GapKind::round_round, 0, 0, 1.0, Fade::none});
-      return;
-    }
     if (out_of_ball(in_b(a_.bound_centre), a_.bound_radius)) return;
+    const bool round_b = b_.round() || is_tube(b_), sides = has_side(a_) && has_side(b_);
+    if (round_b && !swapped_)
+      add({GapKind::round_round, 0, 0, 1.0, sides ? Fade::parallel : Fade::none});
+    // Parallel sides touch with the discs at their ends.
+    if (sides || (has_side(a_) && b_.solid == Solid::segment))
+      for (int i = 0; i < parts; ++i) add({GapKind::end_round, i, 0, 1.0, Fade::none});
+    if (is_tube(a_) ? round_b || !is_round_tube() : b_.round()) return;
     for (int i = 0; i < parts; ++i)
       if (b_.solid == Solid::surface && !each_triangle_) {
         add({GapKind::part_surface, i, 0, 1.0, Fade::none});
-        if (is_tube(b_)) add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       } else if (b_.solid == Solid::surface) {
         const Shape part = part_of(a_, i);
         over_surface({GapKind::part_triangle, GapKind::part_edge, GapKind::part_corner}, i,
@@ -108,11 +113,15 @@ class Finder {
       } else if (b_.solid == Solid::polyhedron) {
         add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       }
+    if (is_tube(b_))
+      for (int i = 0; i < parts; ++i) add({GapKind::part_solid, i, 0, 1.0, Fade::none});
     // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
     // part; only capsules have an edge without faces.
-    if ((whole && b_.solid != Solid::segment) || has_rings()) return;
-    for (int j : edges_)
-      if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, Fade::none});
+    if (whole && b_.solid != Solid::segment) return;
+    for (int j : edges_) {
+      if (!b_.edges[j].convex || (is_tube(b_) && !is_inner_edge(b_, j))) continue;
+      add({GapKind::round_edge, 0, j, 1.0, has_side(a_) ? Fade::parallel : Fade::none});
+    }
   }
 
  private:
@@ -186,11 +195,12 @@ class Finder {
   [[nodiscard]] bool stands_on_plane() const {
     return is_tube(a_) && b_.solid == Solid::half_space;
   }
-  /// Whether the outer rims of a tube act, instead of the corners of its polygon. Single triangles
-  /// do not show a rim that has passed through them.
-  [[nodiscard]] bool has_rings() const {
+  /// Whether a is a tube whose outer side and rims act, instead of its polygon. Single triangles do
+  /// not show a rim that has passed through them.
+  [[nodiscard]] bool is_round_tube() const {
     return is_tube(a_) &&
-           (b_.solid == Solid::polyhedron || (b_.solid == Solid::surface && !each_triangle_));
+           (b_.solid == Solid::polyhedron || b_.solid == Solid::segment || b_.round() ||
+            is_tube(b_) || (b_.solid == Solid::surface && !each_triangle_));
   }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
@@ -215,16 +225,18 @@ class Finder {
       radius > 0.0 ? add(pair) : push(pair);
     };
     for (int t : triangles_) {
+      if (is_tube(b_) && !is_end_face(b_, t)) continue;
       const auto& c = b_.triangles[t];
       if (std::abs(b_.planes[t].normal.dot(x) - b_.planes[t].offset) > r) continue;
       take(nearest_on_triangle(x, b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]).nearest, 0,
            t, 1.0);
     }
     for (int e : edges_) {
-      if (b_.edges[e].open) continue;
+      if (b_.edges[e].open || (is_tube(b_) && !is_across_end(b_, e))) continue;
       const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
       take(p + std::clamp((x - p).dot(v) / v.squaredNorm(), 0.0, 1.0) * v, 1, e, -1.0);
     }
+    if (is_tube(b_)) return;  // its ends have borders
     for (int k : corners_)
       if (!b_.border_corner[k]) take(b_.corners[k], 2, k, 1.0);
   }

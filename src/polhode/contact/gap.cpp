@@ -145,6 +145,8 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
       return round_over_edge(a, b, pair.j, at_a, at_b);
     case GapKind::round_round:
       return round_over_round(a, b, at_a, at_b);
+    case GapKind::end_round:
+      return end_over_round(a, pair.i, b, at_a, at_b);
   }
   return {};
 }
@@ -157,6 +159,8 @@ FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const
   };
   if (pair.kind == GapKind::edge_edge)
     return {at_a.vector(edge(a, pair.i)), at_b.vector(edge(b, pair.j))};
+  if (pair.kind == GapKind::round_edge)
+    return {at_a.vector(Vec3(a.axes.col(2))), at_b.vector(edge(b, pair.j))};
   // A rim faces along the axis to its own side.
   const bool low =
       pair.kind == GapKind::point_solid && (a.corners[pair.i] - a.centre).dot(a.axes.col(2)) < 0.0;

@@ -20,9 +20,17 @@ enum class GapKind {
   part_edge,       ///< Part i of the round a, edge j of the surface b.
   part_corner,     ///< Part i of the round a, corner j of the surface b.
   part_surface,    ///< Part i of the round a, the whole surface of triangles b.
-  round_edge,      ///< The round solid of a, edge j of b.
-  round_round,     ///< The round solids of a and b.
+  round_edge,      ///< The round solid of a, or a tube from outside, edge j of b.
+  round_round,     ///< The round solids of a and b, tubes from outside.
+  end_round,       ///< Disc at end i of the round a or tube, the round solid, tube or segment b.
 };
+
+/// Whether side a of a feature pair is a corner.
+[[nodiscard]] constexpr bool is_of_corner(GapKind kind) {
+  return kind == GapKind::point_solid || kind == GapKind::point_triangle ||
+         kind == GapKind::point_edge || kind == GapKind::point_corner ||
+         kind == GapKind::point_surface;
+}
 
 /// Weight of a feature pair's potential as a function of the angle between a direction of a and one
 /// of b. The potential fades where the distance has no unique direction.
@@ -49,8 +57,11 @@ struct Gap {
   V3<T> point;      ///< Midway between the two surfaces, world [m].
   T slope{1.0};     ///< |∂g/∂x|; not 1 where several features count.
   T share{1.0};     ///< Resultant of the forces of all features over the force of the gap.
-  int feature = 0;  ///< Nearest part of b: 0 its face, else an edge or corner.
+  int feature = 0;  ///< Nearest part of b: 0 its face, else an edge or corner; or kInMouth.
 };
+
+/// Gap::feature of the last three kinds where one is in a tube or in front of its mouth.
+inline constexpr int kInMouth = 1;
 
 /// Distance, normal and point of a feature pair; with Dual also their derivatives.
 template <class T>
@@ -63,7 +74,7 @@ template <class T>
                                       const Placement<T>& at_b);
 
 /// Part of the round solid a that can come near faces, as an ellipsoid: the whole of an ellipsoid;
-/// of a cylinder or cone a slightly convex disc at its end `which`.
+/// of a cylinder or cone a slightly convex disc at its end `which`. Of a tube its outer rim.
 [[nodiscard]] Shape part_of(const Shape& a, int which);
 
 /// Directions compared by a Fade, fixed to a and b (of any constant length).

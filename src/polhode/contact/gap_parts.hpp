@@ -61,5 +61,10 @@ template <class T>
 template <class T>
 [[nodiscard]] Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
                                       const Placement<T>& at_b);
+/// Slightly convex disc at an end of a cylinder, cone or tube, an ellipsoid.
+[[nodiscard]] Shape end_disc(const Shape& a, int which);
+template <class T>
+[[nodiscard]] Gap<T> end_over_round(const Shape& a, int which, const Shape& b,
+                                    const Placement<T>& at_a, const Placement<T>& at_b);
 
 }  // namespace polhode::contact

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <polhode/contact/gap_parts.hpp>
-#include <polhode/contact/round_solids/ellipsoid.hpp>
+#include <polhode/contact/round_solids/cylinder.hpp>
 #include <polhode/contact/round_solids/round_shape.hpp>
+#include <polhode/contact/separation.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -16,7 +19,7 @@ namespace {
 /// Support point of a round solid, from its centre, in the unit direction n.
 template <class T>
 V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n) {
-  return s.round_solid->formulas<T>().support(s, axes, n);
+  return s.round_solid->formulas<T>().support(s, axes, n, blur::fine);
 }
 
 /// Support point of a shape in the world.
@@ -36,91 +39,30 @@ Mat3 values(const Axes<T>& axes) {
   return columns;
 }
 
-/// Like `support`, in the world, with its derivative by the direction.
-CurvedSupport curved_support(const Shape& s, const Mat3& axes, const Vec3& direction) {
-  const CurvedSupport c = s.round_solid->curved_support(s, axes.transpose() * direction);
-  return {axes * c.x, axes * c.D * axes.transpose()};
-}
+/// Half thickness of a needle over its length.
+constexpr double kSlender = 1e-6;
 
-/// Largest half thickness of a needle, as a part of its length.
-constexpr double kSlender = 1e-3;
-
-/// An edge as a slender ellipsoid. Unlike a straight line it has a unique nearest point to a face
-/// that it lies on. The rounding of the edge beyond its thickness is left out.
+/// An edge as a slender cylinder. Unlike a straight line it has a unique nearest point to a face
+/// that it lies on.
 Shape needle(const Shape& b, int edge) {
   const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
   Shape s;
-  const double length = (q - p).norm(), thickness = std::min(b.rounding, kSlender * length);
+  const double length = (q - p).norm(), thickness = kSlender * length;
   s.solid = Solid::round;
-  s.round_solid = &ellipsoid_solid();
+  s.round_solid = &cylinder_solid();
+  s.rounding = std::max(0.0, b.rounding - thickness);
   s.centre = 0.5 * (p + q);
-  s.half = {0.5 * length, thickness, thickness};
-  s.axes.col(0) = (q - p).normalized();
-  s.axes.col(1) = s.axes.col(0).unitOrthogonal();
-  s.axes.col(2) = s.axes.col(0).cross(s.axes.col(1));
-  return s;
-}
-
-/// Two unit vectors normal to n.
-void tangents(const Vec3& n, Vec3& e, Vec3& f) {
-  e = n.unitOrthogonal();
-  f = n.cross(e);
-}
-
-/// Direction of largest separation of two round solids: the maximum of F(n) = n·(x_a(−n) − x_b(n)),
-/// by Newton's method on the unit sphere.
-struct Separation {
-  Vec3 n;
-  Eigen::Matrix2d M;  ///< Negative derivative of the tangential part of x_a − x_b by the two
-                      ///< tangential increments of n.
-};
-
-/// @param between  From the centre of b to that of a.
-/// @param start  Initial direction, of any length.
-Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
-                    const Vec3& between, const Vec3& start) {
-  Separation s;
-  s.n = start.squaredNorm() > 0.0 ? Vec3(start.normalized()) : Vec3::UnitZ();
-  const auto offset = [&](const Vec3& n, Mat3* D) {
-    const CurvedSupport on_a = curved_support(a, axes_a, -n), on_b = curved_support(b, axes_b, n);
-    if (D) *D = on_a.D + on_b.D;
-    return Vec3(between + on_a.x - on_b.x);
-  };
-  Mat3 D;
-  Vec3 w = offset(s.n, &D);
-  for (int k = 0; k < 200; ++k) {
-    Vec3 e, f;
-    tangents(s.n, e, f);
-    const double F = s.n.dot(w), size = D.diagonal().sum() + std::abs(F);
-    s.M << e.dot(D * e) + F, e.dot(D * f), f.dot(D * e), f.dot(D * f) + F;
-    const Eigen::Vector2d slope(e.dot(w), f.dot(w));
-    if (slope.norm() <= 1e-14 * size) break;
-    // Where F is not concave, each principal direction ascends by its own curvature.
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
-    principal.computeDirect(s.M);
-    const Eigen::Vector2d curvature = principal.eigenvalues().cwiseAbs().cwiseMax(1e-12 * size);
-    Eigen::Vector2d move = principal.eigenvectors() *
-                           (principal.eigenvectors().transpose() * slope).cwiseQuotient(curvature);
-    if (move.norm() > 0.5) move *= 0.5 / move.norm();
-    bool better = false;
-    for (int cut = 0; cut < 40 && !better; ++cut, move *= 0.5) {
-      const Vec3 next = (s.n + move[0] * e + move[1] * f).normalized();
-      Mat3 D_next;
-      const Vec3 w_next = offset(next, &D_next);
-      better = next.dot(w_next) > F || (move.norm() < 1e-6 && next.dot(w_next) >= F - 1e-15 * size);
-      if (!better) continue;
-      s.n = next, w = w_next, D = D_next;
-    }
-    if (!better) break;
-  }
+  s.half = {thickness, thickness, 0.5 * length};
+  s.axes.col(2) = (q - p).normalized();
+  s.axes.col(0) = s.axes.col(2).unitOrthogonal();
+  s.axes.col(1) = s.axes.col(2).cross(s.axes.col(0));
   return s;
 }
 
 /// @param start  Approximate direction from b to a.
-/// @param rounding  Of b, beyond its own.
 template <class T>
 Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
-                  const Placement<T>& at_b, const Vec3& start, double rounding = 0.0) {
+                  const Placement<T>& at_b, const Vec3& start) {
   const Axes<T> on_a(a, at_a), on_b(b, at_b);
   const V3<T> between = on_a.centre - on_b.centre;
   const Separation s = separate(a, b, values(on_a), values(on_b), value(between), start);
@@ -138,8 +80,8 @@ Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
   const V3<T> y = on_b.centre + support<T>(b, on_b.axis, n);
   Gap<T> g;
   g.normal = n;
-  g.distance = dot(n, x - y) - rounding;
-  g.point = 0.5 * (x + y + rounding * n);
+  g.distance = dot(n, x - y);
+  g.point = 0.5 * (x + y);
   return g;
 }
 
@@ -159,28 +101,130 @@ V3<T> extreme_point(const Shape& a, int which, const V3<T>& n, const Placement<T
          (radius * y / across) * at.axis[1];
 }
 
+namespace {
+
+/// Directions around a tube's axis from which its nearest place is searched.
+constexpr int kDirections = 24;
+/// Projections onto both shapes in turn in that search, from each direction and from the best.
+constexpr int kProjections = 3, kLastProjections = 6;
+
+/// Whether a tube's hull, at this distance from another shape, stands for the tube: they do not
+/// overlap deeply, and the nearest place of the hull lies outside the middle of the wall. Elsewhere
+/// the other shape is within the tube, or in front of its mouth.
+bool hull_stands_for(const Shape& tube, const Vec3& nearest, double distance) {
+  const double wall = tube.half[0] - tube.half[1] + 2.0 * tube.rounding;
+  return distance > -0.5 * wall &&
+         std::hypot(nearest.x(), nearest.y()) > tube.half[0] + tube.rounding - 0.5 * wall;
+}
+
+/// Place of the outer side of a tube nearest to another shape, in its own axes: the best of those
+/// found from several directions, no bound.
+/// @param distance  Gap of a place [m], and a point of the other shape near it.
+template <class Distance>
+Vec3 nearest_on_side(const Shape& tube, const Distance& distance) {
+  const double R = tube.half[0], H = hull_of_tube(tube).half[2];
+  const auto onto_side = [&](const Vec3& y) {
+    const double q = std::hypot(y.x(), y.y());
+    return q > 0.0 ? Vec3(R / q * y.x(), R / q * y.y(), std::clamp(y.z(), -H, H))
+                   : Vec3(R, 0.0, std::clamp(y.z(), -H, H));
+  };
+  Vec3 best = Vec3::Zero(), other;
+  double least = std::numeric_limits<double>::infinity();
+  const auto descend = [&](Vec3 place, int count) {
+    for (int k = 0; k <= count; ++k) {
+      const double d = distance(place, other);
+      if (d < least) least = d, best = place;
+      place = onto_side(other);
+    }
+  };
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / kDirections;
+    for (const double height : {-H, 0.0, H})
+      descend({R * std::cos(angle), R * std::sin(angle), height}, kProjections);
+  }
+  descend(best, kLastProjections);
+  return best;
+}
+
+/// Gap of the outer side of a tube over a shape in which or in whose mouth it may be.
+template <class T>
+Gap<T> side_over(const Shape& tube, const Shape& b, const Placement<T>& at_tube,
+                 const Placement<T>& at_b) {
+  const auto world = [&](const Vec3& y) { return at_tube.point(tube.centre + tube.axes * y); };
+  const Vec3 place = nearest_on_side(tube, [&](const Vec3& y, Vec3& other) {
+    const Gap<T> g = point_over_solid(world(y), tube.rounding, b, at_b);
+    const Vec3 surface = value(g.point) - 0.5 * value(g.distance) * value(g.normal);
+    other = tube.axes.transpose() * (at_tube.to_body(surface) - tube.centre);
+    return value(g.distance);
+  });
+  Gap<T> g = point_over_solid(world(place), tube.rounding, b, at_b);
+  g.feature = kInMouth;
+  return g;
+}
+
+/// Convex shape that stands for a round one: a tube's hull, the needle of a segment, or itself.
+/// @param own  Place for one that is made.
+const Shape& convex(const Shape& s, Shape& own) {
+  if (s.solid == Solid::segment) return own = needle(s, 0);
+  return is_tube(s) ? own = hull_of_tube(s) : s;
+}
+
+/// Gap of two convex shapes that stand for a and b.
+/// @param start  Approximate direction from b to a.
+template <class T>
+Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, const Shape& b,
+                  const Placement<T>& at_a, const Placement<T>& at_b, const Vec3& start) {
+  const Gap<T> g = smooth_gap(convex_a, convex_b, at_a, at_b, start);
+  if (!is_tube(a) && !is_tube(b)) return g;
+  const Vec3 half = 0.5 * value(g.distance) * value(g.normal), middle = value(g.point);
+  const auto stands = [&](const Shape& tube, const Placement<T>& at, const Vec3& nearest) {
+    return hull_stands_for(tube, tube.axes.transpose() * (at.to_body(nearest) - tube.centre),
+                           value(g.distance));
+  };
+  if ((!is_tube(a) || stands(a, at_a, middle + half)) &&
+      (!is_tube(b) || stands(b, at_b, middle - half)))
+    return g;
+  Gap<T> within;
+  within.distance = T(std::numeric_limits<double>::infinity());
+  if (is_tube(a)) within = side_over(a, is_tube(b) ? b : convex_b, at_a, at_b);
+  if (is_tube(b)) {
+    Gap<T> other = side_over(b, is_tube(a) ? a : convex_a, at_b, at_a);
+    other.normal = -other.normal;
+    if (value(other.distance) < value(within.distance)) within = other;
+  }
+  return within;
+}
+
+}  // namespace
+
+template <class T>
+Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
+                        const Placement<T>& at_b) {
+  Shape own_a, own_b;
+  return convex_gap(convex(a, own_a), a, convex(b, own_b), b, at_a, at_b,
+                    value(at_a.point(a.centre)) - value(at_b.point(b.centre)));
+}
+
+template <class T>
+Gap<T> end_over_round(const Shape& a, int which, const Shape& b, const Placement<T>& at_a,
+                      const Placement<T>& at_b) {
+  Shape own;
+  const Shape disc = end_disc(a, which), &other = convex(b, own);
+  return convex_gap(disc, a, other, b, at_a, at_b,
+                    value(at_a.point(disc.centre)) - value(at_b.point(other.centre)));
+}
+
 template <class T>
 Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement<T>& at_a,
                        const Placement<T>& at_b) {
   const Shape slender = needle(b, edge);
   // As if a were a ball: the nearest point of the needle is that of the edge.
   const Vec3 X = at_b.to_body(value(at_a.point(a.centre))) - slender.centre,
-             v = slender.axes.col(0);
-  const double along = v.dot(X), length = slender.half.x(), part = along / length;
-  Vec3 start = X - along * v;
-  const double left = 1.0 - part * part;
-  if (left > 1e-6)
-    start = start.normalized() + (part / std::sqrt(left) * slender.half.y() / length) * v;
-  else
-    start += (along - std::copysign(length, along)) * v;
-  return smooth_gap(a, slender, at_a, at_b, value(at_b.vector(start)),
-                    b.rounding - slender.half.y());
-}
-
-template <class T>
-Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
-                        const Placement<T>& at_b) {
-  return smooth_gap(a, b, at_a, at_b, value(at_a.point(a.centre)) - value(at_b.point(b.centre)));
+             v = slender.axes.col(2);
+  const double half = slender.half.z(), along = std::clamp(v.dot(X), -half, half);
+  Shape own;
+  return convex_gap(convex(a, own), a, slender, slender, at_a, at_b,
+                    value(at_b.vector(Vec3(X - along * v))));
 }
 
 template V3<double> extreme_point(const Shape&, int, const V3<double>&, const Placement<double>&);
@@ -198,5 +242,11 @@ template Gap<Fine> round_over_round(const Shape&, const Shape&, const Placement<
                                     const Placement<Fine>&);
 template Gap<Dual> round_over_round(const Shape&, const Shape&, const Placement<Dual>&,
                                     const Placement<Dual>&);
+template Gap<double> end_over_round(const Shape&, int, const Shape&, const Placement<double>&,
+                                    const Placement<double>&);
+template Gap<Dual> end_over_round(const Shape&, int, const Shape&, const Placement<Dual>&,
+                                  const Placement<Dual>&);
+template Gap<Fine> end_over_round(const Shape&, int, const Shape&, const Placement<Fine>&,
+                                  const Placement<Fine>&);
 
 }  // namespace polhode::contact

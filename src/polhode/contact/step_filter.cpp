@@ -33,12 +33,45 @@ constexpr double kLongestTurn = 0.6;
 /// rotations.
 double lever(const Shape& s, const FeaturePair& f, bool side_a) {
   if (!s.bounded()) return 0.0;
-  const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
-                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner ||
-                      f.kind == GapKind::point_surface;
-  if (side_a && corner) return s.corners[f.i].norm();
+  if (side_a && is_of_corner(f.kind)) return s.corners[f.i].norm();
   if (s.solid == Solid::ball) return s.centre.norm();
   return s.reach;
+}
+
+/// Whether side a (or b) of a feature pair is a whole solid of revolution, or an end or rim of it:
+/// a rotation about its axis does not move it.
+bool is_of_revolution(const Shape& s, const FeaturePair& f, bool side_a) {
+  const bool tube = is_tube(s);
+  if (!tube && !(s.round() && s.half[0] == s.half[1])) return false;
+  switch (f.kind) {
+    case GapKind::part_solid:
+    case GapKind::round_round:
+    case GapKind::end_round:
+      return true;
+    case GapKind::extreme_plane:
+    case GapKind::part_triangle:
+    case GapKind::part_edge:
+    case GapKind::part_corner:
+    case GapKind::part_surface:
+    case GapKind::round_edge:
+      return side_a;
+    case GapKind::point_solid:
+      return !side_a;
+    default:
+      return false;
+  }
+}
+
+/// Bound of the speed by a rotation, per unit of the increment, of the points of side a or b.
+double turning_speed(const Vec3& theta, const Mat3& Lambda, const Shape& s, const FeaturePair& f,
+                     bool side_a) {
+  if (theta.isZero(0.0)) return 0.0;
+  const double far = lever(s, f, side_a);
+  if (!is_of_revolution(s, f, side_a)) return theta.norm() * far;
+  const Vec3 axis = s.axes.col(2);
+  const double along = (Lambda * axis).dot(theta),
+               across = (theta - along * (Lambda * axis)).norm();
+  return across * far + std::abs(along) * axis.cross(s.centre).norm();
 }
 
 /// Approach speed of points z of a body along n per unit of the increment: the effect of the
@@ -106,10 +139,7 @@ constexpr int kShorterParts = 4;
 
 /// Points that span side a (or b) of a feature pair, if they are few. @returns how many.
 int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec3, 2>& points) {
-  const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
-                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner ||
-                      f.kind == GapKind::point_surface;
-  if (side_a && corner) {
+  if (side_a && is_of_corner(f.kind)) {
     points[0] = s.corners[f.i];
     return 1;
   }
@@ -194,9 +224,10 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     const Vec3 relative = x_a.head<3>() - x_b.head<3>();
     const Shape &A = *p.data.a, &B = *p.data.b;
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-    double speed = x_a.tail<3>().norm() * lever(A, p.data.pair, true);
+    double speed = turning_speed(x_a.tail<3>(), a.Lambda_n1, A, p.data.pair, true);
     if (B.bounded()) {
-      speed += relative.norm() + x_b.tail<3>().norm() * lever(B, p.data.pair, false);
+      speed += relative.norm();
+      speed += turning_speed(x_b.tail<3>(), b.Lambda_n1, B, p.data.pair, false);
     } else {
       speed += std::abs(relative.dot(b.Lambda_n1 * B.axes.col(2)));
       speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + A.reach + B.centre.norm());
@@ -244,7 +275,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
 /// present normal n no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a gap can be
 /// followed by steps of its own size. A single point also stays clear of b as long as it is in
 /// front of the plane that separates both now and turns with b: it may roll or slide along a
-/// turning face.
+/// turning face. Of the rotation of a solid of revolution only the part across its axis counts.
 /// A rim around a feature, as the inner side of a tube, is approached by all of the motion.
 /// @eq{contact-filter}
 double ContactSet::advance(const Followed& followed, std::span<const BodyStep> steps,
@@ -262,6 +293,8 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const GapKind kind = p.data.pair.kind;
   const bool in_tube =
       (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
+  const bool hulls =
+      kind == GapKind::round_edge || kind == GapKind::round_round || kind == GapKind::end_round;
   const bool ring = has_part(kind) && is_tube(*p.data.a);
   const Shape rim = ring ? part_of(*p.data.a, p.data.pair.i) : Shape{};
   std::array<Vec3, 2> ends;
@@ -282,9 +315,9 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   for (int k = 0; k < 200; ++k) {
     const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
     const Vec3 n = value(g.normal);
-    const bool hollow =
-        in_tube || (ring && !lies_in_front(rim, a.r_n1 + done * x_a.head<3>(),
-                                           Mat3(cay(done * x_a.tail<3>()) * a.Lambda_n1), g));
+    const bool hollow = in_tube || (hulls && g.feature == kInMouth) ||
+                        (ring && !lies_in_front(rim, a.r_n1 + done * x_a.head<3>(),
+                                                Mat3(cay(done * x_a.tail<3>()) * a.Lambda_n1), g));
     double speed = hollow ? relative.norm() : std::max(0.0, -n.dot(relative));
     std::array<Vec3, 2> few;
     const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
@@ -292,7 +325,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
       if (theta.isZero(0.0)) return 0.0;
       const Shape& shape = side_a ? *p.data.a : *p.data.b;
       const int count = few_points(shape, p.data.pair, side_a, few);
-      if (count == 0 || hollow) return theta.norm() * lever(shape, p.data.pair, side_a);
+      if (count == 0 || hollow) return turning_speed(theta, Lambda, shape, p.data.pair, side_a);
       const Mat3 L = done > 0.0 ? Mat3(cay(done * theta) * Lambda) : Lambda;
       for (int m = 0; m < count; ++m) few[m] = L * few[m];
       return approach_by_turn(theta, towards, std::span(few).first(count), most - done);
@@ -365,7 +398,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
         return enters <= leaves;
       },
       [&](int t) {
-        if (!is_tube(B) || !is_inner_side(B, t)) near.push_back(t);
+        if (!is_tube(B) || is_end_face(B, t)) near.push_back(t);
       });
   const auto speed = [&](const Vec3& n, const Mat3& L_a, double left, bool in_front) {
     double v = in_front ? std::max(0.0, -n.dot(relative)) : relative.norm();
@@ -373,7 +406,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
       const std::array<Vec3, 1> z{L_a * Z};
       v += approach_by_turn(x_a.tail<3>(), n, z, left);
     } else {
-      v += x_a.tail<3>().norm() * lever_a;
+      v += turning_speed(x_a.tail<3>(), L_a, A, p.data.pair, true);
     }
     return v + x_b.tail<3>().norm() * B.reach;
   };

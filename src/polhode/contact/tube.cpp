@@ -4,7 +4,9 @@
 #include <numbers>
 
 #include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/round_solids/cylinder.hpp>
 #include <polhode/contact/round_solids/meridian.hpp>
+#include <polhode/contact/round_solids/ring.hpp>
 #include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
@@ -13,6 +15,17 @@ namespace {
 
 /// Number of fixed points on a rim, as a cylinder has them, for standing on it.
 constexpr int kTubeRimPoints = 12;
+
+/// Distance of an outer rim behind its end, as a part of its radius.
+constexpr double kSetback = 2e-3;
+
+/// Half thickness of a rim, as a part of its radius.
+constexpr double kThin = 1e-6;
+
+/// Half the length between the outer rims [m].
+double half_between_rims(const Shape& tube) {
+  return tube.half[2] - std::min(kSetback * tube.half[0], 0.5 * tube.half[2]);
+}
 
 }  // namespace
 
@@ -33,6 +46,29 @@ Shape tube(std::string_view where, double outer, double inner, double length,
       s.points.push_back(i);
   }
   return s;
+}
+
+Shape outer_rim(const Shape& tube, int which) {
+  const double radius = tube.half[0], height = half_between_rims(tube);
+  Shape rim;
+  rim.solid = Solid::round;
+  rim.round_solid = &ring_solid();
+  rim.rounding = tube.rounding;
+  rim.axes = tube.axes;
+  rim.centre = tube.centre + (which == 0 ? -height : height) * tube.axes.col(2);
+  rim.half = {radius, radius, kThin * radius};
+  return rim;
+}
+
+Shape hull_of_tube(const Shape& tube) {
+  Shape hull;
+  hull.solid = Solid::round;
+  hull.round_solid = &cylinder_solid();
+  hull.rounding = tube.rounding;
+  hull.axes = tube.axes;
+  hull.centre = tube.centre;
+  hull.half = {tube.half[0], tube.half[0], half_between_rims(tube)};
+  return hull;
 }
 
 /// Nearest point of a ring with a rectangular section: two round faces and two flat ones.

@@ -7,8 +7,8 @@
 
 namespace polhode::contact {
 
-/// A hollow round bar along z of the placement: a surface of triangles to shapes with edges or
-/// faces, with exact round faces to rounded points and to half spaces.
+/// A hollow round bar along z of the placement, with exact round sides and outer rims. Its ends and
+/// inner rims are a polygon's.
 ///
 /// @param outer, inner  Diameters [m].
 /// @param polygon  Closed polyhedral approximation; the corners of its rims lie on their circles.
@@ -23,15 +23,30 @@ namespace polhode::contact {
   return s.solid == Solid::surface && s.half[0] > 0.0;
 }
 
+/// Outer rim of a tube, a ring slightly behind its end: it stands on the corners of its inner rims.
+[[nodiscard]] Shape outer_rim(const Shape& tube, int which);
+
+/// Cylinder between the outer rims, which stands for the tube to what lies outside it.
+[[nodiscard]] Shape hull_of_tube(const Shape& tube);
+
 /// Whether a corner of a tube's polygon lies on the inner side.
 [[nodiscard]] inline bool on_inner_side(const Shape& tube, int corner) {
   const Vec3 x = tube.axes.transpose() * (tube.corners[corner] - tube.centre);
   return std::hypot(x.x(), x.y()) < 0.5 * (tube.half[0] + tube.half[1]);
 }
-/// Whether a triangle of it does; the round side then replaces it.
-[[nodiscard]] inline bool is_inner_side(const Shape& tube, int triangle) {
+/// Whether an edge of it is one of the inner side or its rims.
+[[nodiscard]] inline bool is_inner_edge(const Shape& tube, int edge) {
+  return on_inner_side(tube, tube.edges[edge].i) && on_inner_side(tube, tube.edges[edge].j);
+}
+/// Whether an edge of it runs across an end, between both sides.
+[[nodiscard]] inline bool is_across_end(const Shape& tube, int edge) {
+  return on_inner_side(tube, tube.edges[edge].i) != on_inner_side(tube, tube.edges[edge].j);
+}
+/// Whether a triangle of it belongs to an end; round sides replace the others.
+[[nodiscard]] inline bool is_end_face(const Shape& tube, int triangle) {
   const auto& c = tube.triangles[triangle];
-  return on_inner_side(tube, c[0]) && on_inner_side(tube, c[1]) && on_inner_side(tube, c[2]);
+  const bool inner = on_inner_side(tube, c[0]);
+  return on_inner_side(tube, c[1]) != inner || on_inner_side(tube, c[2]) != inner;
 }
 
 /// Gap of a ball of radius rho around the point x against a tube with round faces.

@@ -81,7 +81,7 @@ TEST_P(EveryRoundSolid, HasTheExtentOfItsPicture) {
     const Vec3 n = random.direction();
     double extent = -std::numeric_limits<double>::infinity();
     for (const Vec3& x : list) extent = std::max(extent, n.dot(x));
-    const Vec3 support = solid_.curved_support(s, s.axes.transpose() * n).x;
+    const Vec3 support = solid_.curved_support(s, s.axes.transpose() * n, blur::fine).x;
     EXPECT_NEAR(n.dot(s.centre + s.axes * support), extent, kRounded * s.bound_radius);
   }
 }
@@ -94,13 +94,13 @@ TEST_P(EveryRoundSolid, HasOneSupportPointAndItsDerivative) {
   Random random(6);
   for (int trial = 0; trial < 20; ++trial) {
     const Vec3 n = random.direction();
-    const CurvedSupport curved = solid_.curved_support(s, n);
-    EXPECT_LT((value(solid_.plain.support(s, axes, v3(n))) - curved.x).norm(), 1e-14);
+    const CurvedSupport curved = solid_.curved_support(s, n, blur::coarse);
+    EXPECT_LT((value(solid_.plain.support(s, axes, v3(n), blur::coarse)) - curved.x).norm(), 1e-14);
     // Tangential to the sphere of directions, where the two forms need not agree otherwise.
     const Mat3 across = Mat3::Identity() - n * n.transpose();
     const Mat numeric = test::central_difference(
         [&](const Vec& by) -> Vec {
-          return solid_.curved_support(s, (n + across * by).normalized()).x;
+          return solid_.curved_support(s, (n + across * by).normalized(), blur::coarse).x;
         },
         3, 1e-6);
     EXPECT_LT((curved.D * across - numeric).norm(), 1e-6 * s.bound_radius / kRounded);

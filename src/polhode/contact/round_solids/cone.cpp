@@ -19,7 +19,7 @@ struct ApexAndBase {
   double softness;  ///< Where apex and base are equally far [m].
 
   explicit ApexAndBase(const Shape& s) {
-    const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding, e = kSmooth;
+    const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding, e = blur::coarse;
     base = {R, R, e * R};
     apex = H - e * R;
     softness = e * R;
@@ -61,7 +61,7 @@ struct Cone {
 
   /// @eq{contact-round-support}
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n) {
+  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double /*blur*/) {
     const ApexAndBase parts(s);
     const V3<T> apex = parts.apex * axes[2], base = of_ellipsoid(parts.base, axes, n) - apex,
                 d = apex - base;
@@ -70,7 +70,7 @@ struct Cone {
     return 0.5 * (apex + base + (more / root) * d + (soft / root) * n);
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n) {
+  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double /*blur*/) {
     const ApexAndBase parts(s);
     CurvedSupport c = curved_ellipsoid(parts.base, n);
     const Vec3 apex = parts.apex * Vec3::UnitZ(), base = c.x - apex, d = apex - base;
@@ -80,6 +80,10 @@ struct Cone {
     c.D = 0.5 * ((1.0 - more / root) * c.D + (soft / root) * Mat3::Identity() +
                  (soft / (root * root * root)) * (d - more * n) * d.transpose());
     return c;
+  }
+
+  static Vec3 sharpened(const Shape& /*s*/, const Vec3& n, double /*from*/, double /*to*/) {
+    return n;
   }
 };
 

@@ -12,12 +12,15 @@ namespace polhode::contact {
 
 namespace {
 
-/// A needle plus a disc, which have the extents of the cylinder together.
+/// Ratio over the blur beyond which the support point is near an end of the side, or the rim.
+constexpr double kFar = 30.0;
+
+/// A needle plus a disc, which have the extents of the core of a cylinder together.
 struct NeedleAndDisc {
   Vec3 disc, needle;  ///< Semi-axes [m].
 
-  explicit NeedleAndDisc(const Shape& s) {
-    const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding, e = kSmooth;
+  NeedleAndDisc(const Shape& s, double e) {
+    const double R = s.half[0], H = s.half[2];
     // h one + r e = H along the axis and r one + h e = R across it.
     const double one = std::sqrt(1.0 + e * e), h = one * H - e * R, r = one * R - e * H;
     disc = {r * one, r * one, r * e};
@@ -47,16 +50,27 @@ struct Cylinder {
 
   /// @eq{contact-round-support}
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n) {
-    const NeedleAndDisc sum(s);
-    return of_ellipsoid(sum.disc, axes, n) + of_ellipsoid(sum.needle, axes, n);
+  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
+    const NeedleAndDisc sum(s, blur);
+    return of_ellipsoid(sum.disc, axes, n) + of_ellipsoid(sum.needle, axes, n) + s.rounding * n;
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n) {
-    const NeedleAndDisc sum(s);
+  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
+    const NeedleAndDisc sum(s, blur);
     const CurvedSupport disc = curved_ellipsoid(sum.disc, n),
                         needle = curved_ellipsoid(sum.needle, n);
-    return {disc.x + needle.x, disc.D + needle.D};
+    return {disc.x + needle.x + s.rounding * n,
+            disc.D + needle.D + s.rounding * (Mat3::Identity() - n * n.transpose())};
+  }
+
+  /// The support point depends on the ratio of the components along and across the axis, over the
+  /// blur where the former is the smaller one, times the blur where it is the larger one.
+  static Vec3 sharpened(const Shape& /*s*/, const Vec3& n, double from, double to) {
+    const double across = std::hypot(n.x(), n.y()), along = std::abs(n.z());
+    const double ratio = std::min(across, along) / std::max(across, along);
+    if (ratio > kFar * from) return n;
+    return along < across ? Vec3(n.x(), n.y(), to / from * n.z())
+                          : Vec3(to / from * n.x(), to / from * n.y(), n.z());
   }
 };
 

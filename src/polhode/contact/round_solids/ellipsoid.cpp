@@ -54,16 +54,23 @@ struct Ellipsoid {
   }
 
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n) {
-    return of_ellipsoid(rounded_half(s), axes, n);
+  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
+    return of_ellipsoid(thickened(s, blur), axes, n);
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n) {
-    return curved_ellipsoid(rounded_half(s), n);
+  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
+    return curved_ellipsoid(thickened(s, blur), n);
+  }
+
+  static Vec3 sharpened(const Shape& s, const Vec3& n, double from, double to) {
+    return n.cwiseProduct(thickened(s, from).cwiseQuotient(thickened(s, to)).cwiseAbs2());
   }
 
  private:
-  static Vec3 rounded_half(const Shape& s) { return s.half + Vec3::Constant(s.rounding); }
+  static Vec3 thickened(const Shape& s, double blur) {
+    const Vec3 half = s.half + Vec3::Constant(s.rounding);
+    return half.cwiseMax(blur * half.maxCoeff());
+  }
 };
 
 }  // namespace

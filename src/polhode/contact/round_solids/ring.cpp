@@ -19,6 +19,7 @@ const RoundSolid& ring_solid() {
   static constexpr RoundSolid solid{"ring",
                                     nullptr,
                                     nullptr,
+                                    nullptr,
                                     {over_ring<double>, nullptr},
                                     {over_ring<Dual>, nullptr},
                                     {over_ring<Fine>, nullptr}};

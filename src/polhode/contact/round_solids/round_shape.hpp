@@ -6,10 +6,6 @@
 
 namespace polhode::contact {
 
-/// Radius to which the rims of two round solids are rounded against each other, as a part of their
-/// size: their support functions are then smooth.
-inline constexpr double kSmooth = 1e-2;
-
 /// A shape of that kind without rounding, ends and bounds.
 /// @param half  From its centre to the ends of its extent, along its axes [m].
 [[nodiscard]] Shape round_shape(const RoundSolid& kind, const Vec3& half, const ShapePlace& place);

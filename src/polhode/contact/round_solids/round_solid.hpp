@@ -15,14 +15,21 @@ struct CurvedSupport {
   Mat3 D;
 };
 
+/// Smoothing of support functions, as a part of a solid's size: straight sides bulge, sharp rims
+/// are rounded, and slender and flat ellipsoids are thickened by it.
+namespace blur {
+inline constexpr double coarse = 1e-2;  ///< From which a search starts; a cone keeps it.
+inline constexpr double fine = 1e-6;
+}  // namespace blur
+
 /// Gap and support function of a kind of round solid, for numbers of one type.
 template <class T>
 struct RoundFormulas {
   /// Gap of a ball of radius rho around the point x against the solid b.
   Gap<T> (*over)(const V3<T>& x, double rho, const Shape& b, const Placement<T>& at_b);
   /// Support point, from the centre, in the unit direction n; smooth in n, rounding included.
-  /// @param axes  The three of the solid, in the world.
-  V3<T> (*support)(const Shape& s, const V3<T>* axes, const V3<T>& n);
+  /// @param axes  The three of the solid, in the world. @param blur  See namespace blur.
+  V3<T> (*support)(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur);
 };
 
 /// A kind of convex solid with a smooth surface that is not a polyhedron. It is an ellipsoid, or
@@ -37,7 +44,9 @@ struct RoundSolid {
   Shape (*shape)(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
                  double rounding);
   /// As RoundFormulas::support(), with n in the solid's own axes.
-  CurvedSupport (*curved_support)(const Shape& s, const Vec3& n);
+  CurvedSupport (*curved_support)(const Shape& s, const Vec3& n, double blur);
+  /// Direction, of any length, whose support point at blur `to` is near that of n at blur `from`.
+  Vec3 (*sharpened)(const Shape& s, const Vec3& n, double from, double to);
   RoundFormulas<double> plain;
   RoundFormulas<Dual> dual;
   RoundFormulas<Fine> fine;
@@ -59,6 +68,7 @@ constexpr RoundSolid record_of(std::string_view name) {
   return {name,
           Kind::shape,
           Kind::curved_support,
+          Kind::sharpened,
           {Kind::template over<double>, Kind::template support<double>},
           {Kind::template over<Dual>, Kind::template support<Dual>},
           {Kind::template over<Fine>, Kind::template support<Fine>}};
