@@ -160,7 +160,7 @@ TEST_P(EveryPairOfShapes, HasFineGapsThatFollowTheLastDigitsOfAStep) {
       // Cores that overlap, which no law allows, have several depths; in its mouth a tube's outer
       // side is out of reach, and its gap an estimate.
       if (gap_after(0.0) < 1e-12 - (x.rounding + y.rounding)) continue;
-      if (p.pair.kind >= GapKind::round_round && moved(0.0).feature == kInMouth) continue;
+      if (is_of_hull(p.pair.kind) && moved(0.0).feature == kInMouth) continue;
       const double u = e.motion.a().u.x();
       std::vector<Fine> way, change;
       for (int k = 0; k <= 8; ++k) {

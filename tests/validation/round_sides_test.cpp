@@ -80,5 +80,41 @@ TEST(RoundSides, RollAcrossEachOtherFreely) {
   });
 }
 
+/// A bar in the groove between two fixed ones of its kind, with flush ends.
+TEST(RoundSides, RestInAGrooveWithFlushEnds) {
+  struct Bar {
+    std::string shape;
+    double radius;
+  };
+  const Bar bars[] = {{"cylinder: [0.2, 0.5]", 0.1},
+                      {"tube: [0.2, 0.16, 0.5]", 0.1},
+                      {"cylinder: [0.02, 2]", 0.01}};
+  for (const Bar& bar : bars)
+    for (const std::string law : {"barrier", "nonsmooth"})
+      for (const double step : {1e-2, 1e-3}) {
+        SCOPED_TRACE(format("{} by {} at {} s", bar.shape, law, step));
+        const double R = bar.radius, height = std::sqrt(3.0) * R;
+        const std::string lies = "orientation: {axis: x, angle: 90 deg}";
+        Simulation s(read_model_text(
+            format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+                   "  left: {{fixed: true, shape: {{{0}}}, position: [-{1}, 0, 0], {2}}}\n"
+                   "  right: {{fixed: true, shape: {{{0}}}, position: [{1}, 0, 0], {2}}}\n"
+                   "  bar: {{shape: {{{0}}}, mass: 1, inertia: [0.1, 0.1, 0.01], "
+                   "position: [0, 0, {3:.17g}], {2}}}\n"
+                   "contacts: {{default: {{law: {4}, friction: 0.5}}}}\n"
+                   "analysis: {{type: dynamics, duration: 0.5 s, step: {5} s}}\n",
+                   bar.shape, R, lies, height, law, step),
+            "m.yaml"));
+        const BodyMotion start = s.body("bar");
+        const RunSummary end = s.run();
+        ASSERT_EQ(end.end, RunEnd::finished) << end.message;
+        const BodyMotion bar_at = s.body("bar");
+        EXPECT_NEAR(bar_at.r.z(), height, 2e-4 * R);
+        EXPECT_NEAR(bar_at.r.x(), 0.0, 2e-4 * R);
+        EXPECT_LT(start.q.angularDistance(bar_at.q), 1e-4);
+        EXPECT_LT(bar_at.v.norm(), 1e-4);
+      }
+}
+
 }  // namespace
 }  // namespace polhode::round_sides_tests

@@ -8,36 +8,35 @@ namespace polhode::contact {
 
 namespace {
 
-/// Angle below which fading potentials take directions as parallel: its sin².
-constexpr double kFadeSquare = 1e-3;
 /// Displacements and rotations below these have no direction: corrections along them are round-off.
 constexpr double kNoTurn = 1e-6, kNoMove = 1e-6;
 /// Largest shift of the common point per unit rotation, as a part of L.
 constexpr double kLargestShift = 0.1;
 
-/// m of a Fade: x(2 − x) of x = sin²/1e-3 < 1. y is the cosine.
+/// m of a Fade: x(2 − x) of x = sin²/fade_square < 1. y is the cosine.
 template <class T>
-T fading(Fade fade, const T& y) {
-  const T x = (1.0 - y * y) * (1.0 / kFadeSquare);
+T fading(const FeaturePair& pair, const T& y) {
+  const T x = (1.0 - y * y) * (1.0 / pair.fade_square);
   const bool near = value(x) < 1.0;
   const T m = near ? x * (2.0 - x) : T(1.0);
-  if (fade == Fade::parallel) return m;
+  if (pair.fade == Fade::parallel) return m;
   return near && value(y) < 0.0 ? 1.0 - m : T(0.0);
 }
 
 /// (m(y_1) − m(y_0))/(y_1 − y_0), evaluated without the difference where both fade.
 template <class T>
-T fading_quotient(Fade fade, double y_0, const T& y_1) {
-  const double x_0 = (1.0 - y_0 * y_0) / kFadeSquare;
-  const T x_1 = (1.0 - y_1 * y_1) * (1.0 / kFadeSquare);
+T fading_quotient(const FeaturePair& pair, double y_0, const T& y_1) {
+  const double square = pair.fade_square;
+  const double x_0 = (1.0 - y_0 * y_0) / square;
+  const T x_1 = (1.0 - y_1 * y_1) * (1.0 / square);
   const bool in_0 = x_0 < 1.0, in_1 = value(x_1) < 1.0;
   if (!in_0 && !in_1) return T(0.0);
-  const double sign = fade == Fade::parallel ? 1.0 : -1.0;
-  if (fade == Fade::flat && (in_0 ? y_0 : value(y_1)) > 0.0) return T(0.0);
-  if (in_0 && in_1) return sign * (-1.0 / kFadeSquare) * ((y_0 + y_1) * (2.0 - x_0 - x_1));
+  const double sign = pair.fade == Fade::parallel ? 1.0 : -1.0;
+  if (pair.fade == Fade::flat && (in_0 ? y_0 : value(y_1)) > 0.0) return T(0.0);
+  if (in_0 && in_1) return sign * (-1.0 / square) * ((y_0 + y_1) * (2.0 - x_0 - x_1));
   const T change = y_1 - y_0;
   if (std::abs(value(change)) < 1e-14) return T(0.0);
-  return (fading(fade, y_1) - fading(fade, y_0)) / change;
+  return (fading(pair, y_1) - fading(pair, y_0)) / change;
 }
 
 /// A cheap point near the contact at t_n, the origin in which gaps are computed.
@@ -67,7 +66,7 @@ double weight_at(const PointData& data, const Placement<double>& at_a,
                  const Placement<double>& at_b) {
   if (data.pair.fade == Fade::none) return data.pair.weight;
   const FadeDirections<double> f = fade_directions(data.pair, *data.a, *data.b, at_a, at_b);
-  return data.pair.weight * fading(data.pair.fade, dot(f.a, f.b));
+  return data.pair.weight * fading(data.pair, dot(f.a, f.b));
 }
 
 namespace {
@@ -220,10 +219,10 @@ class Evaluation {
     const T y_1 = dot(f_1.a, f_1.b);
     const T energy =
         0.5 * (data_.normal.energy(g_0.distance) + data_.normal.energy_of(g_1.distance));
-    const T mean = 0.5 * (fading(data_.pair.fade, y_0) + fading(data_.pair.fade, y_1));
+    const T mean = 0.5 * (fading(data_.pair, y_0) + fading(data_.pair, y_1));
     lambda_ = mean * lambda_;
     stiffness_ *= value(mean);
-    const T q = fading_quotient(data_.pair.fade, y_0, y_1);
+    const T q = fading_quotient(data_.pair, y_0, y_1);
     couple_ = (-(energy * q)) * cross(average(f_0.a, f_1.a, 0.5), average(f_0.b, f_1.b, 0.5));
   }
 

@@ -17,6 +17,11 @@ namespace polhode::contact {
 
 namespace {
 
+/// Angle at which sides count as parallel, times their half length over the sum of their radii.
+constexpr double kParallel = 0.02;
+
+double radius_of(const Shape& s) { return s.half[0] + s.rounding; }
+
 /// Whether the shape has a straight side about its axis.
 bool has_side(const Shape& s) { return is_tube(s) || (s.round() && s.flat_ends.size() == 2); }
 
@@ -50,7 +55,9 @@ class Finder {
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
       if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
-      if (is_round_tube() && !on_inner_side(a_, i)) continue;
+      // What the rim of a tube stands on, or is within, touches all corners.
+      const bool rims = is_round_tube() && !is_tube(b_) && !b_.round();
+      if (rims && !on_inner_side(a_, i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
@@ -97,13 +104,18 @@ class Finder {
     }
     if (out_of_ball(in_b(a_.bound_centre), a_.bound_radius)) return;
     const bool round_b = b_.round() || is_tube(b_), sides = has_side(a_) && has_side(b_);
-    if (round_b && !swapped_)
-      add({GapKind::round_round, 0, 0, 1.0, sides ? Fade::parallel : Fade::none});
+    if (round_b && !swapped_) {
+      if (sides)
+        add_sides({GapKind::round_round, 0, 0, 1.0, Fade::parallel}, radius_of(b_), b_.half[2]);
+      else
+        add({GapKind::round_round, 0, 0, 1.0, Fade::none});
+    }
     // Parallel sides touch with the discs at their ends.
     if (sides || (has_side(a_) && b_.solid == Solid::segment))
       for (int i = 0; i < parts; ++i) add({GapKind::end_round, i, 0, 1.0, Fade::none});
-    if (is_tube(a_) ? round_b || !is_round_tube() : b_.round()) return;
-    for (int i = 0; i < parts; ++i)
+    if (b_.round() || (is_tube(a_) && !is_round_tube())) return;
+    const bool tubes = is_tube(a_) && is_tube(b_);  // of which one may be in the other
+    for (int i = 0; i < parts && !tubes; ++i)
       if (b_.solid == Solid::surface && !each_triangle_) {
         add({GapKind::part_surface, i, 0, 1.0, Fade::none});
       } else if (b_.solid == Solid::surface) {
@@ -113,14 +125,19 @@ class Finder {
       } else if (b_.solid == Solid::polyhedron) {
         add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       }
-    if (is_tube(b_))
+    if (is_tube(b_) && !tubes)
       for (int i = 0; i < parts; ++i) add({GapKind::part_solid, i, 0, 1.0, Fade::none});
     // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
     // part; only capsules have an edge without faces.
     if (whole && b_.solid != Solid::segment) return;
     for (int j : edges_) {
       if (!b_.edges[j].convex || (is_tube(b_) && !is_inner_edge(b_, j))) continue;
-      add({GapKind::round_edge, 0, j, 1.0, has_side(a_) ? Fade::parallel : Fade::none});
+      if (!has_side(a_)) {
+        add({GapKind::round_edge, 0, j, 1.0, Fade::none});
+        continue;
+      }
+      const double length = (b_.corners[b_.edges[j].j] - b_.corners[b_.edges[j].i]).norm();
+      add_sides({GapKind::round_edge, 0, j, 1.0, Fade::parallel}, b_.rounding, 0.5 * length);
     }
   }
 
@@ -212,6 +229,14 @@ class Finder {
   /// Adds the pair if it is near.
   void add(const FeaturePair& pair) {
     if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_) push(pair);
+  }
+  /// Adds the straight side of a and one of b, or an edge. They fade out where the ends of the
+  /// shorter one are as near: there the gap at these differs by less than a thousandth of the
+  /// radii.
+  void add_sides(FeaturePair pair, double radius, double half) {
+    const double angle = kParallel * (radius_of(a_) + radius) / std::min(a_.half[2], half);
+    pair.fade_square = std::min(pair.fade_square, angle * angle);
+    add(pair);
   }
   /// Adds feature i of a against triangles, minus the edges shared by two of them, plus the corners
   /// common to those.

@@ -26,7 +26,8 @@ struct OrderedPair {
 /// `distance`, sorted by key. Shapes that are both planes have none.
 ///
 /// Corners of each shape are paired with the solid of the other, edges with edges; round solids
-/// with planes at their extreme points, with edges, and with each other.
+/// with planes at their extreme points, with edges, with each other, and with the discs at the ends
+/// of straight sides, which touch where these are parallel. A tube's hull, rims and inner side act.
 /// @eq{contact-sum-of-features}
 ///
 /// @param each_triangle  Triangles, edges and corners of surfaces as separate pairs, for impulses.

@@ -32,11 +32,16 @@ enum class GapKind {
          kind == GapKind::point_surface;
 }
 
+/// Whether a feature pair may have a tube on a side, for which its hull stands.
+[[nodiscard]] constexpr bool is_of_hull(GapKind kind) {
+  return kind == GapKind::round_edge || kind == GapKind::round_round || kind == GapKind::end_round;
+}
+
 /// Weight of a feature pair's potential as a function of the angle between a direction of a and one
 /// of b. The potential fades where the distance has no unique direction.
 enum class Fade {
   none,
-  parallel,  ///< Fades out as the directions become parallel: m = x(2 − x), x = sin²/1e-3.
+  parallel,  ///< Fades out as the directions become parallel: m = x(2 − x), x = sin²/fade_square.
   flat,      ///< Nonzero only while they are nearly opposite: 1 − m.
 };
 
@@ -47,6 +52,7 @@ struct FeaturePair {
   int i = 0, j = 0;
   double weight = 1.0;  ///< −1 for a common edge, which two triangles count twice.
   Fade fade = Fade::none;
+  double fade_square = 1e-3;  ///< Square of the sine of the angle below which it fades.
 };
 
 /// Distance of two features at an instant. The normal points from b to a.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/tube.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
 namespace polhode {
@@ -52,7 +53,7 @@ double weight_of(const PointData& d, const Placement<double>& at_a, const Placem
   const FadeDirections<double> f = fade_directions(d.pair, *d.a, *d.b, at_a, at_b);
   const Vec3 e = value(f.a), g = value(f.b);
   const double y = e.dot(g) / std::sqrt(e.squaredNorm() * g.squaredNorm());
-  const double x = std::min(1.0, (1.0 - y * y) / 1e-3), m = x * (2.0 - x);
+  const double x = std::min(1.0, (1.0 - y * y) / d.pair.fade_square), m = x * (2.0 - x);
   if (d.pair.fade == Fade::parallel) return m;
   return y < 0.0 ? 1.0 - m : 0.0;
 }
@@ -309,7 +310,9 @@ std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> 
   int last = -1;  // edge of the last pair
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     const Point& p = points_[i];
-    if (p.data.pair.kind != GapKind::edge_edge || p.sensor) continue;
+    // The wall of a tube is penetrated from its mouth as well.
+    const bool by_tube = p.data.pair.kind == GapKind::round_edge && is_tube(*p.data.a);
+    if ((p.data.pair.kind != GapKind::edge_edge && !by_tube) || p.sensor) continue;
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
     const double least = least_gap_at_end(p, a, b);
     if (least > 0.0 || p.gap_n - least < kFast * std::min(p.data.a->detail, p.data.b->detail))
@@ -320,8 +323,8 @@ std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> 
     const auto [e, f] = std::pair(p.data.pair.i, p.data.pair.j);
     const bool again =
         last >= 0 && points_[last].key[0] == p.key[0] && points_[last].data.pair.i == e;
-    last = i;
-    if ((!again && pierces(A, e, B, to_a, to_b) && !pierces(A, e, B, from_a, from_b)) ||
+    if (!by_tube) last = i;
+    if ((!again && !by_tube && pierces(A, e, B, to_a, to_b) && !pierces(A, e, B, from_a, from_b)) ||
         (pierces(B, f, A, to_b, to_a) && !pierces(B, f, A, from_b, from_a)))
       return std::pair(shapes_[p.a].body, shapes_[p.b].body);
   }

@@ -108,13 +108,15 @@ constexpr int kDirections = 24;
 /// Projections onto both shapes in turn in that search, from each direction and from the best.
 constexpr int kProjections = 3, kLastProjections = 6;
 
+double wall_of(const Shape& tube) { return tube.half[0] - tube.half[1] + 2.0 * tube.rounding; }
+
 /// Whether a tube's hull, at this distance from another shape, stands for the tube: they do not
 /// overlap deeply, and the nearest place of the hull lies outside the middle of the wall. Elsewhere
 /// the other shape is within the tube, or in front of its mouth.
 bool hull_stands_for(const Shape& tube, const Vec3& nearest, double distance) {
-  const double wall = tube.half[0] - tube.half[1] + 2.0 * tube.rounding;
-  return distance > -0.5 * wall &&
-         std::hypot(nearest.x(), nearest.y()) > tube.half[0] + tube.rounding - 0.5 * wall;
+  const double half = 0.5 * wall_of(tube);
+  return distance > -half &&
+         std::hypot(nearest.x(), nearest.y()) > tube.half[0] + tube.rounding - half;
 }
 
 /// Place of the outer side of a tube nearest to another shape, in its own axes: the best of those
@@ -146,27 +148,45 @@ Vec3 nearest_on_side(const Shape& tube, const Distance& distance) {
   return best;
 }
 
-/// Gap of the outer side of a tube over a shape in which or in whose mouth it may be.
+template <class T>
+Mat3 rotation(const Placement<T>& at) {
+  Mat3 L;
+  for (int i = 0; i < 3; ++i) L.col(i) = value(at.vector(Vec3::Unit(i)));
+  return L;
+}
+
+/// Gap of the outer side of a tube over a shape that its hull does not stand for: no contact,
+/// unless it has passed through the wall.
 template <class T>
 Gap<T> side_over(const Shape& tube, const Shape& b, const Placement<T>& at_tube,
                  const Placement<T>& at_b) {
-  const auto world = [&](const Vec3& y) { return at_tube.point(tube.centre + tube.axes * y); };
+  const auto world = [&](const auto& at, const Vec3& y) {
+    return at.point(tube.centre + tube.axes * y);
+  };
+  const Mat3 L_tube = rotation(at_tube), L_b = rotation(at_b);
+  const Placement<double> plain(value(at_tube.point(Vec3::Zero())), L_tube, 0),
+      plain_b(value(at_b.point(Vec3::Zero())), L_b, 6);
   const Vec3 place = nearest_on_side(tube, [&](const Vec3& y, Vec3& other) {
-    const Gap<T> g = point_over_solid(world(y), tube.rounding, b, at_b);
-    const Vec3 surface = value(g.point) - 0.5 * value(g.distance) * value(g.normal);
-    other = tube.axes.transpose() * (at_tube.to_body(surface) - tube.centre);
-    return value(g.distance);
+    const Gap<double> g = point_over_solid(world(plain, y), tube.rounding, b, plain_b);
+    const Vec3 surface = value(g.point) - 0.5 * g.distance * value(g.normal);
+    other = tube.axes.transpose() * (plain.to_body(surface) - tube.centre);
+    return g.distance;
   });
-  Gap<T> g = point_over_solid(world(place), tube.rounding, b, at_b);
+  Gap<T> g = point_over_solid(world(at_tube, place), tube.rounding, b, at_b);
   g.feature = kInMouth;
+  const double wall = wall_of(tube), open = 0.25 * wall, d = value(g.distance);
+  if (d > -0.5 * wall && d < open) g.distance = T(open);
   return g;
 }
 
-/// Convex shape that stands for a round one: a tube's hull, the needle of a segment, or itself.
-/// @param own  Place for one that is made.
-const Shape& convex(const Shape& s, Shape& own) {
-  if (s.solid == Solid::segment) return own = needle(s, 0);
-  return is_tube(s) ? own = hull_of_tube(s) : s;
+/// Convex shape that stands for a round one: a tube's hull, the needle of a segment, or its own.
+Shape convex(const Shape& s) {
+  if (s.solid == Solid::segment) return needle(s, 0);
+  if (is_tube(s)) return hull_of_tube(s);
+  Shape own;
+  own.solid = s.solid, own.round_solid = s.round_solid;
+  own.centre = s.centre, own.axes = s.axes, own.half = s.half, own.rounding = s.rounding;
+  return own;
 }
 
 /// Gap of two convex shapes that stand for a and b.
@@ -175,24 +195,21 @@ template <class T>
 Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, const Shape& b,
                   const Placement<T>& at_a, const Placement<T>& at_b, const Vec3& start) {
   const Gap<T> g = smooth_gap(convex_a, convex_b, at_a, at_b, start);
-  if (!is_tube(a) && !is_tube(b)) return g;
   const Vec3 half = 0.5 * value(g.distance) * value(g.normal), middle = value(g.point);
-  const auto stands = [&](const Shape& tube, const Placement<T>& at, const Vec3& nearest) {
-    return hull_stands_for(tube, tube.axes.transpose() * (at.to_body(nearest) - tube.centre),
-                           value(g.distance));
+  const auto stands = [&](const Shape& s, const Placement<T>& at, const Vec3& nearest) {
+    return !is_tube(s) || hull_stands_for(s, s.axes.transpose() * (at.to_body(nearest) - s.centre),
+                                          value(g.distance));
   };
-  if ((!is_tube(a) || stands(a, at_a, middle + half)) &&
-      (!is_tube(b) || stands(b, at_b, middle - half)))
-    return g;
-  Gap<T> within;
-  within.distance = T(std::numeric_limits<double>::infinity());
-  if (is_tube(a)) within = side_over(a, is_tube(b) ? b : convex_b, at_a, at_b);
-  if (is_tube(b)) {
+  const bool of_a = stands(a, at_a, middle + half), of_b = stands(b, at_b, middle - half);
+  if (of_a && of_b) return g;
+  Gap<T> open;
+  if (!of_a) open = side_over(a, is_tube(b) ? b : convex_b, at_a, at_b);
+  if (!of_b) {
     Gap<T> other = side_over(b, is_tube(a) ? a : convex_a, at_b, at_a);
     other.normal = -other.normal;
-    if (value(other.distance) < value(within.distance)) within = other;
+    if (of_a || value(other.distance) < value(open.distance)) open = other;
   }
-  return within;
+  return open;
 }
 
 }  // namespace
@@ -200,16 +217,16 @@ Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, 
 template <class T>
 Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
                         const Placement<T>& at_b) {
-  Shape own_a, own_b;
-  return convex_gap(convex(a, own_a), a, convex(b, own_b), b, at_a, at_b,
+  return convex_gap(convex(a), a, convex(b), b, at_a, at_b,
                     value(at_a.point(a.centre)) - value(at_b.point(b.centre)));
 }
 
 template <class T>
 Gap<T> end_over_round(const Shape& a, int which, const Shape& b, const Placement<T>& at_a,
                       const Placement<T>& at_b) {
-  Shape own;
-  const Shape disc = end_disc(a, which), &other = convex(b, own);
+  const Shape disc = end_disc(a, which);
+  Shape other = convex(b);
+  other.round_solid = &flat_cylinder();
   return convex_gap(disc, a, other, b, at_a, at_b,
                     value(at_a.point(disc.centre)) - value(at_b.point(other.centre)));
 }
@@ -222,8 +239,7 @@ Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement
   const Vec3 X = at_b.to_body(value(at_a.point(a.centre))) - slender.centre,
              v = slender.axes.col(2);
   const double half = slender.half.z(), along = std::clamp(v.dot(X), -half, half);
-  Shape own;
-  return convex_gap(convex(a, own), a, slender, slender, at_a, at_b,
+  return convex_gap(convex(a), a, slender, slender, at_a, at_b,
                     value(at_b.vector(Vec3(X - along * v))));
 }
 

@@ -293,8 +293,6 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const GapKind kind = p.data.pair.kind;
   const bool in_tube =
       (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
-  const bool hulls =
-      kind == GapKind::round_edge || kind == GapKind::round_round || kind == GapKind::end_round;
   const bool ring = has_part(kind) && is_tube(*p.data.a);
   const Shape rim = ring ? part_of(*p.data.a, p.data.pair.i) : Shape{};
   std::array<Vec3, 2> ends;
@@ -315,7 +313,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   for (int k = 0; k < 200; ++k) {
     const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
     const Vec3 n = value(g.normal);
-    const bool hollow = in_tube || (hulls && g.feature == kInMouth) ||
+    const bool hollow = in_tube || (is_of_hull(kind) && g.feature == kInMouth) ||
                         (ring && !lies_in_front(rim, a.r_n1 + done * x_a.head<3>(),
                                                 Mat3(cay(done * x_a.tail<3>()) * a.Lambda_n1), g));
     double speed = hollow ? relative.norm() : std::max(0.0, -n.dot(relative));

@@ -12,23 +12,31 @@ namespace polhode::contact {
 
 namespace {
 
-/// Ratio over the blur beyond which the support point is near an end of the side, or the rim.
+/// Ratio over the blur beyond which that point is near an end.
 constexpr double kFar = 30.0;
+
+/// Half thickness of the disc, as a part of its radius. An edge may lie on an end, which is rounded
+/// therefore. It is flat to the disc of another one, which is strictly convex.
+constexpr double kRoundedEnd = 1e-2, kFlatEnd = 1e-5;
+/// Smallest semi-axis of the disc, as a part of the radius.
+constexpr double kThinnest = 1e-9;
 
 /// A needle plus a disc, which have the extents of the core of a cylinder together.
 struct NeedleAndDisc {
   Vec3 disc, needle;  ///< Semi-axes [m].
 
-  NeedleAndDisc(const Shape& s, double e) {
-    const double R = s.half[0], H = s.half[2];
-    // h one + r e = H along the axis and r one + h e = R across it.
-    const double one = std::sqrt(1.0 + e * e), h = one * H - e * R, r = one * R - e * H;
-    disc = {r * one, r * one, r * e};
-    needle = {h * e, h * e, h * one};
+  /// @param e  Half thickness of the needle, as a part of its length.
+  NeedleAndDisc(const Shape& s, double e, double end) {
+    const double R = s.half[0], H = s.half[2], d = std::min(end, 0.5 * H / R);
+    // h + r d = H along the axis and r + h e = R across it.
+    const double h = (H - d * R) / (1.0 - d * e), r = std::max(kThinnest * R, R - h * e);
+    disc = {r, r, r * d};
+    needle = {h * e, h * e, h};
   }
 };
 
 /// Functions of RoundSolid.
+template <bool flat>
 struct Cylinder {
   static Shape shape(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
                      double /*rounding*/) {
@@ -51,27 +59,30 @@ struct Cylinder {
   /// @eq{contact-round-support}
   template <class T>
   static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
-    const NeedleAndDisc sum(s, blur);
+    const NeedleAndDisc sum(s, blur, end(blur));
     return of_ellipsoid(sum.disc, axes, n) + of_ellipsoid(sum.needle, axes, n) + s.rounding * n;
   }
 
   static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
-    const NeedleAndDisc sum(s, blur);
+    const NeedleAndDisc sum(s, blur, end(blur));
     const CurvedSupport disc = curved_ellipsoid(sum.disc, n),
                         needle = curved_ellipsoid(sum.needle, n);
     return {disc.x + needle.x + s.rounding * n,
             disc.D + needle.D + s.rounding * (Mat3::Identity() - n * n.transpose())};
   }
 
-  /// The support point depends on the ratio of the components along and across the axis, over the
-  /// blur where the former is the smaller one, times the blur where it is the larger one.
+  /// The point on the needle depends on the ratio of the components along and across the axis, over
+  /// the blur, and that on the disc on the inverse.
   static Vec3 sharpened(const Shape& /*s*/, const Vec3& n, double from, double to) {
     const double across = std::hypot(n.x(), n.y()), along = std::abs(n.z());
-    const double ratio = std::min(across, along) / std::max(across, along);
-    if (ratio > kFar * from) return n;
-    return along < across ? Vec3(n.x(), n.y(), to / from * n.z())
-                          : Vec3(to / from * n.x(), to / from * n.y(), n.z());
+    if (along <= kFar * from * across) return {n.x(), n.y(), to / from * n.z()};
+    if (!flat || across > kFar * end(from) * along) return n;
+    const double part = end(to) / end(from);
+    return {part * n.x(), part * n.y(), n.z()};
   }
+
+ private:
+  static double end(double blur) { return flat ? std::max(kFlatEnd, blur) : kRoundedEnd; }
 };
 
 }  // namespace
@@ -91,7 +102,12 @@ Shape cylinder(std::string_view where, double diameter, double length, const Sha
 }
 
 const RoundSolid& cylinder_solid() {
-  static constexpr RoundSolid solid = record_of<Cylinder>("cylinder");
+  static constexpr RoundSolid solid = record_of<Cylinder<false>>("cylinder");
+  return solid;
+}
+
+const RoundSolid& flat_cylinder() {
+  static constexpr RoundSolid solid = record_of<Cylinder<true>>("cylinder");
   return solid;
 }
 
