@@ -10,12 +10,12 @@ if(POLHODE_SANITIZE)
 endif()
 foreach(folder ${polhode_lanes})
   set_source_files_properties(${folder}/kernels_baseline.cpp PROPERTIES
-    COMPILE_OPTIONS "${polhode_lane_options}" SKIP_UNITY_BUILD_INCLUSION ON)
+    COMPILE_OPTIONS "${polhode_lane_options}" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
     set_source_files_properties(${folder}/kernels_avx2.cpp PROPERTIES
-      COMPILE_OPTIONS "${polhode_lane_options};-mavx2;-mfma" SKIP_UNITY_BUILD_INCLUSION ON)
+      COMPILE_OPTIONS "${polhode_lane_options};-mavx2;-mfma" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
     set_source_files_properties(${folder}/kernels_avx512.cpp PROPERTIES
       COMPILE_OPTIONS "${polhode_lane_options};-mavx512f;-mavx512dq;-mavx512vl;-mavx2;-mfma;-mprefer-vector-width=512"
-      SKIP_UNITY_BUILD_INCLUSION ON)
+      SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   endif()
 endforeach()

@@ -11,7 +11,9 @@ function(polhode_unity target root batch)
     return()
   endif()
   # Types of anonymous namespaces within a class of the same file, which now is an included one.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  # Clang takes names of two anonymous namespaces for a shadow.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
   target_include_directories(${target} PRIVATE ${root})
   set(units)
   foreach(file ${ARGN})

@@ -16,7 +16,9 @@ namespace polhode {
 
 namespace {
 
-using V4 = double __attribute__((vector_size(32), aligned(8), may_alias));
+// A typedef, since clang ignores the alignment of an alias declaration.
+typedef double V4 __attribute__((vector_size(32), aligned(8), may_alias));
+static_assert(alignof(V4) == alignof(double), "Blocks are aligned as doubles.");
 
 POLHODE_INLINE V4* four(double* x) { return reinterpret_cast<V4*>(x); }
 POLHODE_INLINE const V4* four(const double* x) { return reinterpret_cast<const V4*>(x); }
