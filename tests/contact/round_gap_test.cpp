@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaps of straight round sides, where they cross and where they are parallel, and of tubes with
-// what is in their mouths.
+// Gaps of straight round sides that cross or are parallel, and of tubes and bodies inside them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,7 +86,7 @@ TEST(RoundGap, OfParallelSidesIsThatOfTheirAxes) {
       for (int trial = 0; trial < 16; ++trial) {
         const Vec3 axis = random.direction(), n = axis.unitOrthogonal();
         const double distance = 1e-3 * a.radius;
-        // Of the upper ends, that of a is below that of b.
+        // Distance of the upper end of a below that of b.
         const double below = trial == 0  ? 0.0
                              : trial < 6 ? std::pow(10.0, 1 - trial) * a.radius
                                          : 0.9 * b.half * (1.0 + random.vector(1.0).x());

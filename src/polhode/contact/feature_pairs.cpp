@@ -55,9 +55,9 @@ class Finder {
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
       if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
-      // What the rim of a tube stands on, or is within, touches all corners.
-      const bool rims = is_round_tube() && !is_tube(b_) && !b_.round();
-      if (rims && !on_inner_side(a_, i)) continue;
+      // Corners of an outer rim count against round shapes alone; elsewhere its ring does.
+      const bool by_ring = is_round_tube() && !is_tube(b_) && !b_.round();
+      if (by_ring && !on_inner_side(a_, i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
@@ -110,11 +110,11 @@ class Finder {
       else
         add({GapKind::round_round, 0, 0, 1.0, Fade::none});
     }
-    // Parallel sides touch with the discs at their ends.
+    // Contact of parallel sides, at the discs at their ends.
     if (sides || (has_side(a_) && b_.solid == Solid::segment))
       for (int i = 0; i < parts; ++i) add({GapKind::end_round, i, 0, 1.0, Fade::none});
     if (b_.round() || (is_tube(a_) && !is_round_tube())) return;
-    const bool tubes = is_tube(a_) && is_tube(b_);  // of which one may be in the other
+    const bool tubes = is_tube(a_) && is_tube(b_);
     for (int i = 0; i < parts && !tubes; ++i)
       if (b_.solid == Solid::surface && !each_triangle_) {
         add({GapKind::part_surface, i, 0, 1.0, Fade::none});

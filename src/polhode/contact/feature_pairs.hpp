@@ -27,7 +27,8 @@ struct OrderedPair {
 ///
 /// Corners of each shape are paired with the solid of the other, edges with edges; round solids
 /// with planes at their extreme points, with edges, with each other, and with the discs at the ends
-/// of straight sides, which touch where these are parallel. A tube's hull, rims and inner side act.
+/// of straight sides, which carry where these are parallel. A tube is represented by its hull, its
+/// rims and its inner side.
 /// @eq{contact-sum-of-features}
 ///
 /// @param each_triangle  Triangles, edges and corners of surfaces as separate pairs, for impulses.

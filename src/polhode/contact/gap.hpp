@@ -66,7 +66,7 @@ struct Gap {
   int feature = 0;  ///< Nearest part of b: 0 its face, else an edge or corner; or kInMouth.
 };
 
-/// Gap::feature of the last three kinds where one is in a tube or in front of its mouth.
+/// Gap::feature of kinds with is_of_hull() where one is in a tube or in front of its mouth.
 inline constexpr int kInMouth = 1;
 
 /// Distance, normal and point of a feature pair; with Dual also their derivatives.
@@ -80,7 +80,7 @@ template <class T>
                                       const Placement<T>& at_b);
 
 /// Part of the round solid a that can come near faces, as an ellipsoid: the whole of an ellipsoid;
-/// of a cylinder or cone a slightly convex disc at its end `which`. Of a tube its outer rim.
+/// of a cylinder or cone a slightly convex disc at its end `which`; of a tube its outer rim.
 [[nodiscard]] Shape part_of(const Shape& a, int which);
 
 /// Directions compared by a Fade, fixed to a and b (of any constant length).

@@ -39,7 +39,7 @@ double SeenPart::face(const Shape& b, int triangle, int sides, Nearest& best) co
   const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
   const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
   if (s < 0.0 || t < 0.0 || s + t > 1.0) return distance;
-  // Of several penetrated faces, the one with the shortest exit.
+  // Face of least penetration, where several are penetrated.
   if (best.kind != Nearest::face || !(best.distance > distance))
     best = {Nearest::face, triangle, 0.0, distance};
   return distance;

@@ -40,7 +40,7 @@ void ascend(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes
     s.M << e.dot(D * e) + F, e.dot(D * f), f.dot(D * e), f.dot(D * f) + F;
     const Eigen::Vector2d slope(e.dot(w), f.dot(w));
     if (slope.norm() <= 1e-14 * size) break;
-    // Where F is not concave, each principal direction ascends by its own curvature.
+    // Newton step with absolute curvatures: an ascent also where F is not concave.
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
     principal.computeDirect(s.M);
     const Eigen::Vector2d curvature = principal.eigenvalues().cwiseAbs().cwiseMax(1e-12 * size);
