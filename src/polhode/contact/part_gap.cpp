@@ -208,9 +208,11 @@ Shape ellipsoid_part(const Shape& a, const Vec3& centre, const Vec3& half) {
 }  // namespace
 
 Shape end_disc(const Shape& a, int which) {
-  const auto& [height, radius] = a.flat_ends[static_cast<std::size_t>(which)];
+  const auto& [end, radius] = a.flat_ends[static_cast<std::size_t>(which)];
+  // A tube ends in front of the disc, so that only its rims meet what lies in front of the mouth.
+  const double half = is_tube(a) ? hull_of_tube(a).half[2] : std::abs(end);
   const double bulge = std::min(kBulge * radius, 0.5 * a.half[2]);
-  const double middle = height < 0.0 ? height + bulge : height - bulge;
+  const double middle = std::copysign(half - bulge, end);
   return ellipsoid_part(a, a.centre + middle * a.axes.col(2), {radius, radius, bulge});
 }
 
