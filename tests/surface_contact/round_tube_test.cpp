@@ -60,6 +60,41 @@ TEST(RoundTube, HasTheDerivativesOfItsGap) {
   }
 }
 
+/// A ball in the bore or its mouth that touches both sides: the combined potential is that of both
+/// gaps, and its derivatives hold up to the axis.
+// @tests{surface-feature-sum}
+TEST(RoundTube, TouchesBothSidesOfAThickCable) {
+  const RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
+  contact::NormalLaw law;
+  law.tolerance = 0.02;
+  law.stiffness = 1e4;
+  const auto ball = [&](const Vec3& y) { return s.gap(y, {.law = law, .radius = 0.59}); };
+  for (const Vec3& y : {Vec3(0.004, 0.003, 0.1), Vec3(0.0, 0.006, -0.2), Vec3(1e-5, 0.0, 0.0)}) {
+    const double rho = std::hypot(y[0], y[1]), near = 0.01 - rho, far = 0.01 + rho;
+    const RigidSurface::Gap g = ball(y);
+    EXPECT_NEAR(law.energy(g.value), law.energy(near) + law.energy(far), 1e-10 * law.energy(near));
+    const double h = 1e-7;
+    for (int i = 0; i < 3; ++i) {
+      const RigidSurface::Gap more = ball(y + h * Vec3::Unit(i)),
+                              less = ball(y - h * Vec3::Unit(i));
+      EXPECT_NEAR(g.normal[i], (more.value - less.value) / (2.0 * h), 1e-6) << y.transpose();
+      EXPECT_LT((g.curvature.col(i) - (more.normal - less.normal) / (2.0 * h)).norm(),
+                1e-4 * g.curvature.norm())
+          << y.transpose();
+    }
+  }
+  const RigidSurface::Gap middle = ball(Vec3::Zero());
+  EXPECT_LT(middle.normal.norm(), 1e-4) << "in the middle both sides balance";
+  EXPECT_NEAR(middle.curvature(0, 0) / middle.curvature(1, 1), 1.0, 1e-3);
+  // In front of the mouth it touches the rim on both sides.
+  const Vec3 front(0.001, 0.0, 0.55);
+  EXPECT_LT(law.energy(s.gap(front, {.law = law}).value), 1e-12);
+  const double d = std::hypot(0.61, 0.06) - 0.01 - 0.61;
+  ASSERT_LT(d, law.reach());
+  const double both = law.energy(s.gap({1e-9, 0.0, 0.55}, {.law = law, .radius = 0.61}).value);
+  EXPECT_NEAR(both / (2.0 * law.energy(d)), 1.0, 1e-6);
+}
+
 /// A rope that falls across a bar and is bent about it.
 Simulation rope(const std::string& bar, double turned, double step) {
   return made(format(R"(

@@ -93,6 +93,24 @@ TEST(CableOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
   }
 }
 
+/// A bead that fits closely about the cable, with a clearance of a twentieth of its radius, is
+/// thrown across it: the cable touches both sides of the bore and of its mouths.
+TEST(CableOnTriangles, KeepsEnergyAndMomentaOfABeadAboutIt) {
+  for (const double step : {5e-4, 2e-4, 5e-5}) {
+    Simulation s(thrown("{tube: [0.02, 0.0084, 0.04], orientation: {axis: y, angle: 90 deg}}",
+                        "position: [0.013, 0, 0], velocity: [0.3, 0.5, -1], "
+                        "angular_velocity: [5, 3, 2]",
+                        0.02, step));
+    const RunSummary r = s.run();
+    ASSERT_EQ(r.end, RunEnd::finished) << step << r.message;
+    EXPECT_GT(impulses(s), 0.02) << step;
+    EXPECT_LT(r.energy_drift, 1e-8) << step;
+    EXPECT_LT(r.linear_momentum_drift, 1e-11) << step;
+    EXPECT_LT(r.angular_momentum_drift, 1e-11) << step;
+    EXPECT_GT(r.contacts->least_gap, -4e-6) << "the tolerance: 1e-3 of the cable's radius";
+  }
+}
+
 /// In a step of 1 ms the plate, and the wall of the tube, would pass the cable many times.
 TEST(CableOnTriangles, FastThinBodiesDoNotPassThroughAThinCable) {
   const Scratch folder;

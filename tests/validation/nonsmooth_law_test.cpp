@@ -134,7 +134,7 @@ TEST(NonsmoothLaw, NothingRollsOrSlidesIntoTheFloor) {
       const Balance start = run.balance();
       const RunSummary done = run.run();
       ASSERT_EQ(done.end, RunEnd::finished);
-      EXPECT_GT(done.contacts->least_gap, -6.0 * step * step) << step;
+      EXPECT_GT(done.contacts->least_gap, -0.1 * kG * step * step) << step;
       EXPECT_LT(done.contacts->numerical, 1e-6) << step;
       EXPECT_LT(done.contacts->lost_in_impacts, 5e-3 * (start.kinetic + 1.0)) << step;
       if (lost_before > 0.0) {

@@ -174,7 +174,7 @@ class SurfacesBuilder {
     const SurfaceLaw law =
         law_of(pair.law, material_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
     const std::string where = name_of(pair);
-    const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance, line.radius);
+    const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
     points.points.through = sizes.through;
     const SurfacePlace place =

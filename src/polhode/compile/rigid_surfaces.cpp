@@ -26,9 +26,6 @@ constexpr double kMaxOfBoxes = 0.5, kMaxOfHulls = 0.2, kMaxOfTriangles = 0.25;
 /// let nothing through between them.
 constexpr double kMaxOfRadius = 0.125;
 
-/// The thickest cable in a tube, as part of its bore, whose points keep off the axis.
-constexpr double kMaxOfBore = 0.9;
-
 bool has_triangles(const ShapeSpec& shape) {
   return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
 }
@@ -72,8 +69,7 @@ CableSizes cable_sizes(const ShapeSpec& shape, double radius) {
   return {std::min(radius, half), 0.5 * (radius + half)};
 }
 
-RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance,
-                           double radius) {
+RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance) {
   RigidSurface s;
   const std::vector<double>& size = shape.sizes;
   const auto rounding = [&](double length, double most) {
@@ -95,7 +91,7 @@ RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, dou
     s.kind = RigidSurface::Kind::box;
     s.half = 0.5 * Vec3(size[0], size[1], size[2]);
     s.rounding = rounding(s.half.minCoeff(), kMaxOfBoxes);
-  } else if (shape.type == "tube" && radius < kMaxOfBore * 0.5 * size[1]) {
+  } else if (shape.type == "tube") {
     s.kind = RigidSurface::Kind::tube;
     s.radius = 0.5 * size[0];
     s.half = Vec3(s.radius, 0.5 * size[1], 0.5 * size[2]);

@@ -31,11 +31,9 @@ struct CableSizes {
 [[nodiscard]] CableSizes cable_sizes(const ShapeSpec& shape, double radius);
 
 /// A shape for contact with surfaces of solids, in its own coordinates. Its edges are rounded by
-/// the tolerance of the gap, as far as the shape allows. A tube has round sides, except for cables
-/// that could touch its bore on both sides: for them it consists of triangles.
-/// @param radius  Of a cable [m].
+/// the tolerance of the gap, as far as the shape allows.
 /// @throws InputError if it has no form for a kind of shape.
 [[nodiscard]] RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape,
-                                         double tolerance, double radius = 0.0);
+                                         double tolerance);
 
 }  // namespace polhode

@@ -53,7 +53,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
   const Reference ground, &r_a = reference_of(a, ground), &r_b = reference_of(b, ground);
   const Placement<double> at_a(r_a.r, r_a.Lambda, 0), at_b(r_b.r, r_b.Lambda, 6);
   std::vector<OrderedPair> found;
-  near_feature_pairs(A, B, at_a, at_b, near, found, impulses_.has_value());
+  near_feature_pairs(A, B, at_a, at_b, near, found);
   for (const OrderedPair& f : found) {
     Point p = sample;
     if (f.swapped) std::swap(p.a, p.b);

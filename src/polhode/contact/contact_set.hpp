@@ -238,7 +238,19 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   /// Lower bound of the gap at t_{n+1}, from the displacements of the bodies [m].
   [[nodiscard]] double least_gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const;
   [[nodiscard]] double gap_at_end(int point, const BodyStep& a, const BodyStep& b) const;
+  [[nodiscard]] double nearest_at_end(int point, std::span<const BodyStep> steps) const;
   [[nodiscard]] bool rolls_in(int point, const BodyStep& a, const BodyStep& b) const;
+  [[nodiscard]] ImpulsePoint impulse_point(int point, const Gap<double>& at,
+                                           std::span<const BodyStep> steps) const;
+  [[nodiscard]] std::vector<Gap<double>> places_over_surface(int point, double reach,
+                                                             const Placement<double>& at_a,
+                                                             const Placement<double>& at_b) const;
+  [[nodiscard]] std::optional<double> gap_at_end_of(const ImpulsePoint& at,
+                                                    std::span<const BodyStep> steps) const;
+  void find_places(int point, std::span<const BodyStep> steps, double dt, bool again,
+                   std::vector<ImpulsePoint>& list);
+  [[nodiscard]] bool must_act(const ImpulsePoint& at, const BodyStep& a, const BodyStep& b,
+                              double dt) const;
   /// Whether a point acts in a step that ends with this gap. @param least  Clearance of the
   /// tightest point so far, updated with tightest_ [m].
   [[nodiscard]] bool acts(int point, double gap_1, double& least);
@@ -309,6 +321,12 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   bool pointwise_ = false;  ///< The evaluation is pointwise; closed forms differ in the last bit.
   std::optional<ImpulseOptions> impulses_;
   ImpulseSearch search_;
+  /// Places of a point on a surface at the start of the step.
+  struct PlacesAtStart {
+    double reach = -1.0;  ///< All that are nearer are known [m].
+    std::vector<Gap<double>> gaps;
+  };
+  std::map<int, PlacesAtStart> start_places_;  ///< By point.
 };
 
 }  // namespace polhode::contact

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -30,7 +29,7 @@ bool has_side(const Shape& s) { return is_tube(s) || (s.round() && s.flat_ends.s
 class Finder {
  public:
   Finder(const Shape& a, const Shape& b, const Placement<double>& at_a,
-         const Placement<double>& at_b, double distance, bool swapped, bool each_triangle,
+         const Placement<double>& at_b, double distance, bool swapped,
          std::vector<OrderedPair>& found)
       : a_(a),
         b_(b),
@@ -38,7 +37,6 @@ class Finder {
         at_b_(at_b),
         distance_(distance),
         swapped_(swapped),
-        each_triangle_(each_triangle),
         found_(found) {
     find_region();
   }
@@ -63,11 +61,8 @@ class Finder {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
         if (is_tube(b_))
           add({GapKind::point_solid, i, 0, 1.0, Fade::none});
-        else if (!each_triangle_)
-          add({GapKind::point_surface, i, 0, 1.0, Fade::none});
         else
-          over_surface({GapKind::point_triangle, GapKind::point_edge, GapKind::point_corner}, i, x,
-                       0.0);
+          add({GapKind::point_surface, i, 0, 1.0, Fade::none});
         continue;
       }
       // A fixed point of a rim acts on a plane where the rim lies flat.
@@ -116,12 +111,8 @@ class Finder {
     if (b_.round() || (is_tube(a_) && !is_round_tube())) return;
     const bool tubes = is_tube(a_) && is_tube(b_);
     for (int i = 0; i < parts && !tubes; ++i)
-      if (b_.solid == Solid::surface && !each_triangle_) {
+      if (b_.solid == Solid::surface) {
         add({GapKind::part_surface, i, 0, 1.0, Fade::none});
-      } else if (b_.solid == Solid::surface) {
-        const Shape part = part_of(a_, i);
-        over_surface({GapKind::part_triangle, GapKind::part_edge, GapKind::part_corner}, i,
-                     in_b(part.centre), part.half.maxCoeff());
       } else if (b_.solid == Solid::polyhedron) {
         add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       }
@@ -212,12 +203,10 @@ class Finder {
   [[nodiscard]] bool stands_on_plane() const {
     return is_tube(a_) && b_.solid == Solid::half_space;
   }
-  /// Whether a is a tube whose outer side and rims act, instead of its polygon. Single triangles do
-  /// not show a rim that has passed through them.
+  /// Whether a is a tube whose outer side and rims act, instead of its polygon.
   [[nodiscard]] bool is_round_tube() const {
-    return is_tube(a_) &&
-           (b_.solid == Solid::polyhedron || b_.solid == Solid::segment || b_.round() ||
-            is_tube(b_) || (b_.solid == Solid::surface && !each_triangle_));
+    return is_tube(a_) && (b_.solid == Solid::polyhedron || b_.solid == Solid::segment ||
+                           b_.round() || b_.solid == Solid::surface);
   }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
@@ -238,38 +227,10 @@ class Finder {
     pair.fade_square = std::min(pair.fade_square, angle * angle);
     add(pair);
   }
-  /// Adds feature i of a against triangles, minus the edges shared by two of them, plus the corners
-  /// common to those.
-  /// @param kinds  Against a triangle, an edge, a corner.
-  /// @param x, radius  Ball around the feature, in body coordinates of b; radius 0: a point.
-  void over_surface(const std::array<GapKind, 3>& kinds, int i, const Vec3& x, double radius) {
-    const double r = reach() + radius;
-    const auto take = [&](const Vec3& nearest, int kind, int j, double weight) {
-      if (!((x - nearest).norm() < r)) return;
-      const FeaturePair pair{kinds[kind], i, j, weight, Fade::none};
-      radius > 0.0 ? add(pair) : push(pair);
-    };
-    for (int t : triangles_) {
-      if (is_tube(b_) && !is_end_face(b_, t)) continue;
-      const auto& c = b_.triangles[t];
-      if (std::abs(b_.planes[t].normal.dot(x) - b_.planes[t].offset) > r) continue;
-      take(nearest_on_triangle(x, b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]).nearest, 0,
-           t, 1.0);
-    }
-    for (int e : edges_) {
-      if (b_.edges[e].open || (is_tube(b_) && !is_across_end(b_, e))) continue;
-      const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
-      take(p + std::clamp((x - p).dot(v) / v.squaredNorm(), 0.0, 1.0) * v, 1, e, -1.0);
-    }
-    if (is_tube(b_)) return;  // its ends have borders
-    for (int k : corners_)
-      if (!b_.border_corner[k]) take(b_.corners[k], 2, k, 1.0);
-  }
-
   const Shape &a_, &b_;
   const Placement<double>&at_a_, &at_b_;
   double distance_;
-  bool swapped_, each_triangle_;
+  bool swapped_;
   std::vector<OrderedPair>& found_;
   Eigen::AlignedBox3d region_;
   std::vector<int> corners_, edges_, triangles_;  ///< Features of b in the region.
@@ -279,11 +240,11 @@ class Finder {
 
 void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
                         const Placement<double>& at_second, double distance,
-                        std::vector<OrderedPair>& found, bool each_triangle) {
+                        std::vector<OrderedPair>& found) {
   if (!first.bounded() && !second.bounded()) return;
   const auto start = static_cast<std::ptrdiff_t>(found.size());
-  Finder forth(first, second, at_first, at_second, distance, false, each_triangle, found);
-  Finder back(second, first, at_second, at_first, distance, true, each_triangle, found);
+  Finder forth(first, second, at_first, at_second, distance, false, found);
+  Finder back(second, first, at_second, at_first, distance, true, found);
   forth.points(back);
   back.points(forth);
   forth.edges(back);

@@ -30,10 +30,8 @@ struct OrderedPair {
 /// of straight sides, which carry where these are parallel. A tube is represented by its hull, its
 /// rims and its inner side.
 /// @eq{contact-sum-of-features}
-///
-/// @param each_triangle  Triangles, edges and corners of surfaces as separate pairs, for impulses.
 void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
                         const Placement<double>& at_second, double distance,
-                        std::vector<OrderedPair>& found, bool each_triangle = false);
+                        std::vector<OrderedPair>& found);
 
 }  // namespace polhode::contact

@@ -41,16 +41,15 @@ Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
 namespace {
 
 template <class T>
-Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, int edge,
-                    const Placement<T>& at_b) {
-  const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
+Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  const Vec3 &p = b.corners[b.edges[0].i], &q = b.corners[b.edges[0].j];
   const Vec3 v = q - p, X = at_b.to_body(value(x));
   const double t = (X - p).dot(v) / v.squaredNorm();
   const V3<T> y = t <= 0.0   ? at_b.point(p)
                   : t >= 1.0 ? at_b.point(q)
                              : on_line(x, at_b.point(p), at_b.between(p, q));
   Gap<T> g = between_points(x, y, rho_a, b.rounding);
-  g.feature = t <= 0.0 ? -1 - b.edges[edge].i : t >= 1.0 ? -1 - b.edges[edge].j : 1 + edge;
+  g.feature = t <= 0.0 ? -1 - b.edges[0].i : t >= 1.0 ? -1 - b.edges[0].j : 1;
   return g;
 }
 
@@ -89,7 +88,7 @@ Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Plac
     case Solid::ball:
       return between_points(x, at_b.point(b.centre), rho_a, b.rounding);
     case Solid::segment:
-      return over_segment(x, rho_a, b, 0, at_b);
+      return over_segment(x, rho_a, b, at_b);
     case Solid::polyhedron: {
       const PolyhedronRegion r = nearest_on_polyhedron(b, at_b.to_body(value(x)));
       return over_triangle(x, rho_a, b, r.triangle, r.region, at_b);
@@ -102,7 +101,7 @@ Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Plac
     case Solid::half_space:
       return over_plane(x, at_b.point(b.centre), at_b.vector(b.axes.col(2)), rho_a, b.rounding);
   }
-  throw std::logic_error("point_over_solid: a surface of triangles has a gap per triangle only");
+  throw std::logic_error("point_over_solid: a surface of triangles is no solid");
 }
 
 template <class T>
@@ -119,13 +118,6 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
                                                    b.corners[c[1]], b.corners[c[2]]);
       return over_triangle(p, a.rounding, b, pair.j, r, at_b);
     }
-    case GapKind::point_edge:
-      return over_segment(x(), a.rounding, b, pair.j, at_b);
-    case GapKind::point_corner: {
-      Gap<T> g = between_points(x(), at_b.point(b.corners[pair.j]), a.rounding, b.rounding);
-      g.feature = -1 - pair.j;
-      return g;
-    }
     case GapKind::point_surface:
       return point_over_surface(x(), a.rounding, surface_reach(a, b), b, at_b);
     case GapKind::edge_edge:
@@ -137,8 +129,6 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
     }
     case GapKind::part_solid:
     case GapKind::part_triangle:
-    case GapKind::part_edge:
-    case GapKind::part_corner:
     case GapKind::part_surface:
       return part_gap(part_of(a, pair.i), surface_reach(a, b), pair, b, at_a, at_b);
     case GapKind::round_edge:

@@ -10,15 +10,11 @@ namespace polhode::contact {
 enum class GapKind {
   point_solid,     ///< Corner i of a, the whole convex solid of b.
   point_triangle,  ///< Corner i of a, triangle j of the surface b.
-  point_edge,      ///< Corner i of a, edge j of the surface b.
-  point_corner,    ///< Corner i of a, corner j of the surface b.
   point_surface,   ///< Corner i of a, the whole surface of triangles b.
   edge_edge,       ///< Edge i of a, edge j of b.
   extreme_plane,   ///< Extreme point i of the round a, the plane b.
   part_solid,      ///< Part i of the round a, the whole convex polyhedron b.
   part_triangle,   ///< Part i of the round a, triangle j of the surface b.
-  part_edge,       ///< Part i of the round a, edge j of the surface b.
-  part_corner,     ///< Part i of the round a, corner j of the surface b.
   part_surface,    ///< Part i of the round a, the whole surface of triangles b.
   round_edge,      ///< The round solid of a, or a tube from outside, edge j of b.
   round_round,     ///< The round solids of a and b, tubes from outside.
@@ -28,7 +24,6 @@ enum class GapKind {
 /// Whether side a of a feature pair is a corner.
 [[nodiscard]] constexpr bool is_of_corner(GapKind kind) {
   return kind == GapKind::point_solid || kind == GapKind::point_triangle ||
-         kind == GapKind::point_edge || kind == GapKind::point_corner ||
          kind == GapKind::point_surface;
 }
 
@@ -50,7 +45,7 @@ enum class Fade {
 struct FeaturePair {
   GapKind kind = GapKind::point_solid;
   int i = 0, j = 0;
-  double weight = 1.0;  ///< −1 for a common edge, which two triangles count twice.
+  double weight = 1.0;  ///< Of its potential.
   Fade fade = Fade::none;
   double fade_square = 1e-3;  ///< Square of the sine of the angle below which it fades.
 };

@@ -51,6 +51,13 @@ template <class T>
 template <class T>
 [[nodiscard]] Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
                                         const Placement<T>& at_b);
+/// Appends the gaps of that ball at the places of the surface where the distance is least, if below
+/// `reach` and seen from outside.
+void point_gaps(const Vec3& x, double rho, double reach, const Shape& b,
+                const Placement<double>& at_b, std::vector<Gap<double>>& gaps);
+/// Appends the gaps of a part at such places.
+void part_gaps(const Shape& part, double reach, const Shape& b, const Placement<double>& at_a,
+               const Placement<double>& at_b, std::vector<Gap<double>>& gaps);
 /// Gap of a point against a triangle of b whose nearest part is known.
 template <class T>
 [[nodiscard]] Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,

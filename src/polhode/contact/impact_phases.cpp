@@ -22,22 +22,6 @@ constexpr double kMinBand = 0.1;
 /// Part of the slow speed up to which a resting contact takes part in impacts elsewhere.
 constexpr double kPressed = 0.1;
 
-/// Whether it is a feature pair of a surface of triangles, whose potentials partly cancel: their
-/// bands are equal.
-bool of_surface(GapKind kind) {
-  switch (kind) {
-    case GapKind::point_triangle:
-    case GapKind::point_edge:
-    case GapKind::point_corner:
-    case GapKind::part_triangle:
-    case GapKind::part_edge:
-    case GapKind::part_corner:
-      return true;
-    default:
-      return false;
-  }
-}
-
 }  // namespace
 
 void ContactSet::set_band(Point& p, double stiffness, double upper, double lower) const {
@@ -68,7 +52,7 @@ void ContactSet::start_band(Point& p) const {
   const NormalLaw& law = p.data.normal;
   if (law.is_near_floor(p.gap_n))
     set_band(p, law.stiffness, law.reach(), NormalLaw::floor_below(p.gap_n));
-  if (law.is_spring() || of_surface(p.data.pair.kind)) return;
+  if (law.is_spring()) return;
   const double least = kMinBand * law.tolerance, standard = -law.tolerance;
   const double lower = std::min(standard, p.gap_n - least);
   const double narrower = std::min(1.0, (p.gap_n - lower) / law.tolerance);

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/impulse_places.hpp>
+#include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
@@ -35,17 +37,12 @@ namespace {
 
 /// Weight of a potential below which a neighbouring point acts instead.
 constexpr double kMinWeight = 0.5;
-/// Cosine of the angle between the normals at the middle and the start of the step below which the
-/// bodies would pass each other.
-constexpr double kPasses = 0.5;
 /// Rotations and displacements (as a part of the size) below these have no direction.
 constexpr double kMinTurn = 1e-6, kMinMove = 1e-6;
 /// Largest shift of a point, as a part of the size, and largest rotation of a normal.
 constexpr double kMaxShift = 0.1, kMaxTilt = 0.1;
 /// Displacement of two edges in a step, as a part of the size, above which they are followed.
 constexpr double kFast = 0.02;
-/// Distance, as a part of the rounding, below which points of one surface are the same.
-constexpr double kSamePlace = 1e-6;
 
 /// Weight of a feature pair's potential, see Fade.
 double weight_of(const PointData& d, const Placement<double>& at_a, const Placement<double>& at_b) {
@@ -78,45 +75,26 @@ bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<do
   return true;
 }
 
-/// Drops points that cancel. Neighbouring triangles are equally near at a common edge; a point that
-/// does not remain after the weights −1 of edges is not a point of the surface.
-void drop_cancelled(std::vector<ImpulsePoint>& list, std::size_t first,
-                    std::vector<double>& weights) {
-  std::size_t kept = first;
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    if (weights[k] > 0.5) list[kept++] = list[first + k];
-  if (!weights.empty()) list.resize(kept);
-  weights.clear();
-}
-
 /// Placement at the middle of a step. The mean of both orientations is not a rotation, but carries
-/// points by exactly u + θ × z̄ over the step.
+/// points by exactly u + θ × z̄ over the step. Half the rotation keeps sizes, on which the distances
+/// of a round part from edges rely.
 struct Middle {
   Vec3 r;
   Mat3 Lambda;
 
-  explicit Middle(const BodyStep& s)
-      : r(s.r_n + 0.5 * s.u), Lambda(0.5 * (s.Lambda_n + s.Lambda_n1)) {}
+  Middle(const BodyStep& s, bool keeps_size) : r(s.r_n + 0.5 * s.u) {
+    const double half = 1.0 + std::sqrt(1.0 + 0.25 * s.theta.squaredNorm());
+    Lambda = keeps_size ? Mat3(cay(Vec3(s.theta / half)) * s.Lambda_n)
+                        : Mat3(0.5 * (s.Lambda_n + s.Lambda_n1));
+  }
 };
-
-/// Whether a pair consists of flat pieces: points over triangles, and edges that cross. A contact
-/// that rotates involves several such features, and a body that leaves one of them has not left the
-/// surface.
-bool of_flat_pieces(GapKind kind) {
-  return kind == GapKind::edge_edge || kind == GapKind::point_triangle ||
-         kind == GapKind::point_edge || kind == GapKind::point_corner;
-}
 
 /// Shifts the point, or rotates the normal, so that the relative displacement along the normal
 /// equals the change of the gap: permanent contact then does no work. @eq{contact-direction}
 void follow_gap(const PointData& d, double change, const BodyStep& a, const BodyStep& b,
                 ImpulsePoint& at) {
   const Vec3 turn = a.theta - b.theta, across = at.normal.cross(turn);
-  const auto apart = [&] {
-    return Vec3(a.u + a.theta.cross(at.place - a.r_n - 0.5 * a.u) - b.u -
-                b.theta.cross(at.place - b.r_n - 0.5 * b.u));
-  };
-  const Vec3 u = apart();
+  const Vec3 u = apart(a, b, at.place);
   const double miss = change - at.normal.dot(u), angle = across.norm();
   if (angle > kMinTurn && std::abs(miss) < kMaxShift * d.length * angle) {
     at.place += miss / (angle * angle) * across;
@@ -179,77 +157,80 @@ bool ContactSet::covers(std::span<const BodyStep> steps) const {
 /// start have not approached: the nearest point of a spinning body moves over it.
 bool ContactSet::rolls_in(int point, const BodyStep& a, const BodyStep& b) const {
   const Point& p = points_[point];
-  return !balls_[point].holds && !of_flat_pieces(p.data.pair.kind) &&
+  return !balls_[point].holds && p.data.pair.kind != GapKind::edge_edge &&
          least_gap_at_end(p, a, b) < 0.0 && gap_at_end(point, a, b) < std::min(0.0, p.gap_n);
+}
+
+ImpulsePoint ContactSet::impulse_point(int point, const Gap<double>& at,
+                                       std::span<const BodyStep> steps) const {
+  const Point& p = points_[point];
+  const BodyStep &a = steps[balls_[point].a], &b = steps[balls_[point].b];
+  ImpulsePoint made;
+  made.a = shapes_[p.a].body;
+  made.b = shapes_[p.b].body;
+  made.gap = at.distance;
+  made.normal = made.normal_n = value(at.normal);
+  made.place = made.place_n = value(at.point);
+  made.velocity = relative(a.v_n, a.Lambda_n * a.W_n, made.place - a.r_n, b.v_n, b.Lambda_n * b.W_n,
+                           made.place - b.r_n);
+  made.rate = made.normal.dot(made.velocity);
+  made.restitution = p.restitution;
+  const FrictionLaw& f = p.data.friction;
+  made.friction = f.mu;
+  made.rolling = f.rolling;
+  made.torsion = f.torsion;
+  made.size = std::min(p.data.a->detail, p.data.b->detail);
+  made.number = point;
+  return made;
+}
+
+/// Whether a point would approach faster than contact allows if it did not act.
+bool ContactSet::must_act(const ImpulsePoint& at, const BodyStep& a, const BodyStep& b,
+                          double dt) const {
+  const double slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
+  const Vec3& n = at.normal;
+  // Either of both bodies may be stopped by another contact.
+  const double of_a = n.dot(a.u + a.theta.cross(at.place - a.r_n)),
+               of_b = n.dot(b.u + b.theta.cross(at.place - b.r_n));
+  const double way = std::min({of_a - of_b, of_a, -of_b});
+  return 2.0 * way / dt - at.rate < least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
 }
 
 int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& context,
                             std::vector<ImpulsePoint>& list) {
-  const double dt = context.dt, slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
-  if (list.empty())
+  const double dt = context.dt;
+  if (list.empty()) {
     for (Point& p : points_) p.listed = false;
+    start_places_.clear();
+  }
   const std::size_t before = list.size();
-  std::size_t of_pair = before;  // first point of the present pair of shapes
-  std::uint64_t last = 0;
-  std::vector<double> weights;  // of the points of a pair with a surface of triangles
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
-    if (p.key[0] != last) {
-      drop_cancelled(list, of_pair, weights);
-      of_pair = list.size();
-      last = p.key[0];
-    }
     if (p.listed || p.sensor) continue;
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
     const bool acted = !p.data.history.impulse.isZero(0.0) && before == 0;
-    ImpulsePoint point;
-    point.gap = p.gap_n;
-    point.normal = p.normal_n;
-    point.place = p.place_n;
+    if (is_over_surface(p.data.pair.kind)) {
+      find_places(i, steps, dt, acted, list);
+      continue;
+    }
+    Gap<double> at;
+    at.distance = p.gap_n;
+    at.normal = constant<double>(p.normal_n);
+    at.point = constant<double>(p.place_n);
     const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
     if (p.data.pair.kind == GapKind::edge_edge) {
       if (!acted && least_gap_at_end(p, a, b) > 0.0) continue;
-      Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
-      if (!mend_edges(p.data, a, b, g)) continue;
-      point.gap = g.distance;
-      point.normal = value(g.normal);
-      point.place = value(g.point);
+      at = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
+      if (!mend_edges(p.data, a, b, at)) continue;
     }
-    const Vec3 &n = point.normal, arm_a = point.place - a.r_n, arm_b = point.place - b.r_n;
-    point.velocity = relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b);
-    const double w = point.rate = n.dot(point.velocity);
-    // Either of them may be stopped by another contact.
-    const double of_a = n.dot(a.u + a.theta.cross(arm_a)), of_b = n.dot(b.u + b.theta.cross(arm_b));
-    const double way = std::min({of_a - of_b, of_a, -of_b});
-    const double least = least_exit_speed(point.gap, w, p.restitution, dt, slow);
-    if (!acted && 2.0 * way / dt - w >= least && !rolls_in(i, a, b)) continue;
+    ImpulsePoint point = impulse_point(i, at, steps);
+    if (!acted && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
     if (!balls_[i].holds && weight_of(p.data, at_a, at_b) < kMinWeight) continue;
-    point.a = shapes_[p.a].body;
-    point.b = shapes_[p.b].body;
-    point.restitution = p.restitution;
-    const FrictionLaw& f = p.data.friction;
-    point.friction = f.mu;
-    point.rolling = f.rolling;
-    point.torsion = f.torsion;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
-    point.size = std::min(p.data.a->detail, p.data.b->detail);
-    point.number = i;
     p.listed = true;
-    if (p.data.b->solid == Solid::surface) {
-      const double near = kSamePlace * (p.data.a->rounding + p.data.b->rounding);
-      weights.resize(list.size() - of_pair, 1.0);
-      std::size_t k = 0;
-      while (k < weights.size() && (list[of_pair + k].place - point.place).norm() > near) ++k;
-      if (k < weights.size()) {
-        weights[k] += p.data.pair.weight;
-        continue;
-      }
-      weights.push_back(p.data.pair.weight);
-    }
     list.push_back(point);
   }
-  drop_cancelled(list, of_pair, weights);
   return static_cast<int>(list.size() - before);
 }
 
@@ -273,37 +254,44 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
       at.place = r - (p.data.a->rounding + 0.5 * gap_m) * at.normal;
       continue;
     }
-    const Middle m_a(a), m_b(b);
-    Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(m_a.r, m_a.Lambda, 0),
-                        Placement<double>(m_b.r, m_b.Lambda, 6));
-    if (p.data.pair.kind == GapKind::edge_edge) mend_edges(p.data, a, b, g);
+    const GapKind kind = p.data.pair.kind;
+    const bool round = !is_of_corner(kind) && kind != GapKind::edge_edge;
+    const Middle m_a(a, round), m_b(b, round);
+    const Placement<double> at_a(m_a.r, m_a.Lambda, 0), at_b(m_b.r, m_b.Lambda, 6);
+    Gap<double> g;
+    g.normal = constant<double>(Vec3::Zero());
+    if (is_over_surface(p.data.pair.kind)) {
+      const double way = p.gap_n - least_gap_at_end(p, a, b);
+      const double reach = surface_reach(*p.data.a, *p.data.b) + std::max(0.0, at.gap) + 0.25 * way;
+      const auto places = places_over_surface(at.number, reach, at_a, at_b);
+      if (const Gap<double>* same = same_contact(places, at.normal_n)) g = *same;
+    } else {
+      g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
+    }
+    const bool edges = p.data.pair.kind == GapKind::edge_edge;
+    if (edges) mend_edges(p.data, a, b, g);
     const Vec3 n = value(g.normal);
-    // A point that slides off its triangle belongs to the next one, not to the edge between them.
-    const bool leaves = p.data.pair.kind == GapKind::point_triangle && g.feature != 0;
-    // The side of edges that have passed through each other follows from their outward sides.
-    const Vec3 before = p.data.pair.kind == GapKind::edge_edge ? at.normal : p.normal_n;
-    if (!leaves && n.dot(before) > kPasses) {
+    if (n.dot(at.normal_n) > kPasses) {
       at.normal = n.normalized();
       at.place = value(g.point);
     } else {
-      at.normal = before;
-      at.place = p.place_n + 0.5 * a.u;
+      at.normal = at.normal_n;
+      at.place = at.place_n + 0.5 * a.u;
       continue;
     }
-    if (!of_flat_pieces(p.data.pair.kind))
-      follow_gap(p.data, gap_at_end(at.number, a, b) - p.gap_n, a, b, at);
+    if (edges) continue;
+    if (const std::optional<double> end = gap_at_end_of(at, steps))
+      follow_gap(p.data, *end - at.gap, a, b, at);
   }
 }
 
 double ContactSet::gap_after(std::span<const BodyStep> steps, const ImpulsePoint& point) const {
   const SpherePairCache& balls = balls_[point.number];
   const BodyStep &a = steps[balls.a], &b = steps[balls.b];
-  if (balls.holds || !of_flat_pieces(points_[point.number].data.pair.kind))
-    return gap_at_end(point.number, a, b);
-  // A piece that is left has a gap to the edge of the surface: its plane counts.
-  const Vec3 apart = a.u + a.theta.cross(point.place - a.r_n - 0.5 * a.u) - b.u -
-                     b.theta.cross(point.place - b.r_n - 0.5 * b.u);
-  return point.gap + point.normal.dot(apart);
+  if (balls.holds) return gap_at_end(point.number, a, b);
+  if (points_[point.number].data.pair.kind != GapKind::edge_edge)
+    if (const std::optional<double> end = gap_at_end_of(point, steps)) return *end;
+  return point.gap + point.normal.dot(apart(a, b, point.place));
 }
 
 std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> steps) const {
@@ -331,20 +319,26 @@ std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> 
   return std::nullopt;
 }
 
+/// Adds an impulse to the report of its point, which may touch a surface at several places: normal
+/// and point are their means by force.
 void ContactSet::report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss,
                                 double dt) {
   PointReport& r = p.report;
-  const double push = at.normal.dot(at.impulse);
-  r.normal_force = push / dt;
-  r.force = at.impulse / dt;
-  r.normal = at.normal;
-  r.point = at.place;
-  r.friction_force = (at.impulse - push * at.normal) / dt;
-  r.work.dissipated = loss.normal + loss.friction;
-  r.normal_loss = loss.normal;
+  const double push = std::max(0.0, at.normal.dot(at.impulse)) / dt;
+  const Vec3 friction = at.impulse / dt - push * at.normal;
+  const double part = push > 0.0 ? push / (r.normal_force + push) : p.touched ? 0.0 : 1.0;
+  r.normal = ((1.0 - part) * r.normal + part * at.normal).normalized();
+  r.point = (1.0 - part) * r.point + part * at.place;
+  r.normal_force += push;
+  r.force += at.impulse / dt;
+  r.friction_force += friction;
+  r.work.dissipated += loss.normal + loss.friction;
+  r.normal_loss += loss.normal;
+  const bool slips =
+      r.after.slips || (push > 0.0 && friction.norm() >= (1.0 - 1e-9) * at.friction * push);
   r.after = p.data.history;
-  r.after.slips = r.friction_force.norm() >= (1.0 - 1e-9) * at.friction * r.normal_force;
-  p.touched = push > 0.0;
+  r.after.slips = slips;
+  p.touched = p.touched || push > 0.0;
 }
 
 Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
@@ -355,12 +349,11 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
   for (Vec6& w : wrenches_) w.setZero();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
-    const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
     p.impact_loss = p.friction_loss = 0.0;
     p.touched = false;
     p.report = {};
     p.report.gap_n = p.gap_n;
-    p.report.gap_n1 = gap_at_end(i, a, b);
+    p.report.gap_n1 = nearest_at_end(i, steps);
     p.data.history.impulse.setZero();
     p.data.history.turning.setZero();
   }
@@ -368,8 +361,8 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
     const ImpulsePoint& at = list[k];
     if (at.impulse.isZero(0.0)) continue;
     Point& p = points_[at.number];
-    p.data.history.impulse = at.impulse;
-    p.data.history.turning = at.turning;
+    p.data.history.impulse += at.impulse;
+    p.data.history.turning += at.turning;
     report_impulse(p, at, losses[k], context.dt);
     const auto add = [&](int shape, double sign) {
       const int body = shapes_[shape].body;

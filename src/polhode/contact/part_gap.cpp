@@ -25,24 +25,34 @@ struct SeenSurface {
   const SeenPart& part;
   const Shape& b;
   double round;
+  double reach;  ///< Edges with larger gaps need not be found [m].
+  SeenPart::Sides sides = SeenPart::Sides::two;
 
   [[nodiscard]] SurfacePlace place(const Nearest& n) const {
-    const int kind = n.kind == Nearest::face ? 0 : n.kind == Nearest::edge ? 1 : 2;
-    return {kind, n.index, n.distance - round, n.t, 0};
+    SurfacePlace at{0, n.index, n.distance - round, n.t, 0};
+    if (n.kind == Nearest::none) at.gap = std::numeric_limits<double>::infinity();
+    if (n.kind == Nearest::edge) at.kind = 1;
+    if (n.kind == Nearest::corner) at.kind = 2;
+    return at;
   }
   [[nodiscard]] SurfacePlace triangle(int t) const {
-    Nearest best;
+    Nearest best = within_reach();
     if (is_tube(b) && !is_end_face(b, t)) return place(best);
-    part.face(b, t, 2, best);
+    part.face(b, t, sides, best);
     if (best.kind != Nearest::face)
       for (const int e : b.triangle_edges[t]) part.edge(b, e, best);
     return place(best);
   }
   [[nodiscard]] SurfacePlace edge(int e) const {
-    Nearest best;
+    Nearest best = within_reach();
     if (is_tube(b) && !is_across_end(b, e)) return place(best);
     part.edge(b, e, best);
     return place(best);
+  }
+  [[nodiscard]] Nearest within_reach() const {
+    Nearest none;
+    none.distance = reach + round;
+    return none;
   }
   [[nodiscard]] SurfacePlace corner(int k) const {
     if (is_tube(b)) return place({});
@@ -50,50 +60,48 @@ struct SeenSurface {
   }
 };
 
-/// Nearby features of a surface that count, or the nearest one alone.
-const std::vector<SurfacePlace>& places_of(const SeenPart& part, const Shape& b, double round,
-                                           double reach) {
-  const SeenSurface seen{part, b, round};
+/// Triangles that the part may reach.
+SurfaceSearch& triangles_near(const SeenSurface& seen) {
   SurfaceSearch& search = SurfaceSearch::of_this_thread();
   search.triangles.clear();
-  b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < reach; },
-                [&](int t) { search.triangles.push_back(t); });
-  find_places_that_count(b, search, reach, seen);
-  if (!search.places.empty()) return search.places;
+  seen.b.tree->visit(
+      [&](const auto& box) { return seen.part.bound(box.low, box.high) - seen.round < seen.reach; },
+      [&](int t) { search.triangles.push_back(t); });
+  return search;
+}
+
+/// Places of a surface that count, or the nearest one alone.
+const std::vector<SurfacePlace>& places_or_nearest(const SeenSurface& seen) {
+  SurfaceSearch& search = triangles_near(seen);
+  find_places_that_count(seen.b, search, seen.reach, seen);
+  std::vector<SurfacePlace>& places = search.places;
+  if (!places.empty()) return places;
+  SeenSurface all = seen;
   SurfacePlace best;
-  best.gap = std::numeric_limits<double>::infinity();
-  b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < best.gap; },
-                [&](int t) {
-                  const SurfacePlace one = seen.triangle(t);
-                  if (one.gap < best.gap) best = one;
-                });
+  best.gap = all.reach = std::numeric_limits<double>::infinity();
+  all.b.tree->visit(
+      [&](const auto& box) { return all.part.bound(box.low, box.high) - all.round < best.gap; },
+      [&](int t) {
+        const SurfacePlace one = all.triangle(t);
+        if (one.gap < best.gap) best = one, all.reach = one.gap;
+      });
   best.count = 1;
-  search.places.push_back(best);
-  return search.places;
+  places.push_back(best);
+  return places;
 }
 
 Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part) {
   Nearest best;
-  switch (pair.kind) {
-    case GapKind::part_corner:
-      best.kind = Nearest::corner;
-      best.index = pair.j;
-      return best;
-    case GapKind::part_edge:
-      part.edge(b, pair.j, best);
-      return best;
-    case GapKind::part_triangle:
-      part.face(b, pair.j, 2, best);
-      if (best.kind == Nearest::face) return best;
-      for (const int e : b.triangle_edges[pair.j]) part.edge(b, e, best);
-      return best;
-    default:
-      break;
+  if (pair.kind == GapKind::part_triangle) {
+    part.face(b, pair.j, SeenPart::Sides::two, best);
+    if (best.kind == Nearest::face) return best;
+    for (const int e : b.triangle_edges[pair.j]) part.edge(b, e, best);
+    return best;
   }
   Nearest shallowest{Nearest::face, 0, 0.0, -std::numeric_limits<double>::infinity()};
   bool inside = true;
   for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t) {
-    const double distance = part.face(b, t, 1, best);
+    const double distance = part.face(b, t, SeenPart::Sides::one, best);
     inside = inside && b.planes[t].normal.dot(part.centre()) < b.planes[t].offset;
     if (distance > shallowest.distance) shallowest = {Nearest::face, t, 0.0, distance};
   }
@@ -221,39 +229,62 @@ Shape part_of(const Shape& a, int which) {
   return a.flat_ends.empty() ? ellipsoid_part(a, a.centre, a.half) : end_disc(a, which);
 }
 
+namespace {
+
+/// Gap of a part to a nearest place of b.
+template <class T>
+Gap<T> over_nearest(const Shape& part, const SeenPart& seen, const Nearest& n, const Shape& b,
+                    const Placement<T>& at_a, const Placement<T>& at_b) {
+  if (n.kind == Nearest::face) {
+    const auto& plane = b.planes[n.index];
+    const bool behind = b.solid == Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
+    return over_face(part, b, n.index, behind, at_a, at_b);
+  }
+  if (n.kind == Nearest::overlap) {
+    const Vec3 place = part.centre + part.half.x() * (std::cos(n.t) * part.axes.col(0) +
+                                                      std::sin(n.t) * part.axes.col(1));
+    return over_plane(at_a.point(place), at_b.point(b.corners[b.triangles[n.index][0]]),
+                      at_b.vector(b.planes[n.index].normal), part.rounding, b.rounding);
+  }
+  if (n.kind == Nearest::edge) return over_edge(part, b, n.index, n.t, at_a, at_b);
+  return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),
+                      -1 - n.index);
+}
+
+/// The nearest place on a surface as one of a body with faces.
+Nearest nearest_at(const SurfacePlace& p) {
+  Nearest n;
+  n.kind = p.kind == 0 ? Nearest::face : p.kind == 1 ? Nearest::edge : Nearest::corner;
+  n.index = p.index;
+  n.t = p.t;
+  return n;
+}
+
+}  // namespace
+
 template <class T>
 Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const Shape& b,
                 const Placement<T>& at_a, const Placement<T>& at_b) {
   if (is_tube(b) && pair.kind == GapKind::part_solid)
     return point_over_solid(farthest_from_axis(part, b, at_a, at_b), part.rounding, b, at_b);
   const SeenPart seen(part, at_a, at_b);
-  const auto over = [&](const Nearest& n) {
-    if (n.kind == Nearest::face) {
-      const auto& plane = b.planes[n.index];
-      const bool behind =
-          b.solid == Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
-      return over_face(part, b, n.index, behind, at_a, at_b);
-    }
-    if (n.kind == Nearest::overlap) {
-      const Vec3 place = part.centre + part.half.x() * (std::cos(n.t) * part.axes.col(0) +
-                                                        std::sin(n.t) * part.axes.col(1));
-      return over_plane(at_a.point(place), at_b.point(b.corners[b.triangles[n.index][0]]),
-                        at_b.vector(b.planes[n.index].normal), part.rounding, b.rounding);
-    }
-    if (n.kind == Nearest::edge) return over_edge(part, b, n.index, n.t, at_a, at_b);
-    return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),
-                        -1 - n.index);
-  };
-  if (pair.kind != GapKind::part_surface) return over(nearest_of(pair, b, seen));
+  if (pair.kind != GapKind::part_surface)
+    return over_nearest(part, seen, nearest_of(pair, b, seen), b, at_a, at_b);
   OneGap<T> sum(reach);
-  for (const SurfacePlace& p : places_of(seen, b, part.rounding + b.rounding, reach)) {
-    Nearest n;
-    n.kind = p.kind == 0 ? Nearest::face : p.kind == 1 ? Nearest::edge : Nearest::corner;
-    n.index = p.index;
-    n.t = p.t;
-    sum.add(over(n), p.count);
-  }
+  for (const SurfacePlace& p : places_or_nearest({seen, b, part.rounding + b.rounding, reach}))
+    sum.add(over_nearest(part, seen, nearest_at(p), b, at_a, at_b), p.count);
   return sum.gap();
+}
+
+void part_gaps(const Shape& part, double reach, const Shape& b, const Placement<double>& at_a,
+               const Placement<double>& at_b, std::vector<Gap<double>>& gaps) {
+  const SeenPart seen(part, at_a, at_b);
+  const SeenSurface surface{seen, b, part.rounding + b.rounding, reach,
+                            SeenPart::Sides::two_or_through};
+  SurfaceSearch& search = triangles_near(surface);
+  find_least_places(b, search, reach, surface);
+  for (const SurfacePlace& p : search.places)
+    add_from_outside(over_nearest(part, seen, nearest_at(p), b, at_a, at_b), p, b, at_b, gaps);
 }
 
 template Gap<double> part_gap(const Shape&, double, const FeaturePair&, const Shape&,

@@ -17,6 +17,9 @@ namespace {
 /// compared.
 constexpr int kPlaces = 32;
 
+/// Largest depth of a ring below the triangle that it lies on, as a part of its radius.
+constexpr double kShallow = 0.02;
+
 /// Unit vector of a direction across the axis of a ring, in axes of the part.
 Vec3 across_axis(const Vec3& y) {
   const double q = std::hypot(y.x(), y.y());
@@ -25,17 +28,21 @@ Vec3 across_axis(const Vec3& y) {
 
 }  // namespace
 
-double SeenPart::face(const Shape& b, int triangle, int sides, Nearest& best) const {
+double SeenPart::face(const Shape& b, int triangle, Sides sides, Nearest& best) const {
   const auto& c = b.triangles[triangle];
   const Vec3 &p = b.corners[c[0]], &q = b.corners[c[1]], &r = b.corners[c[2]];
   Vec3 n = b.planes[triangle].normal;
   double height = n.dot(centre_ - p);
-  if (sides == 2 && height < 0.0) n = -n, height = -height;
+  const bool behind = height < 0.0;
+  if (sides != Sides::one && behind) n = -n, height = -height;
   Vec3 to_nearest;
   const double reach = extent(n, to_nearest), distance = height - reach;
+  if (height < 0.0) return distance;
   // The lowest place of a ring below the plane may lie beyond the solid, within the ring.
-  if (height < 0.0 || (ring_ && distance < 0.0)) return distance;
-  const Vec3 x = centre_ + std::min(1.0, height / reach) * to_nearest;
+  const bool through = sides == Sides::two_or_through && !behind;
+  if (ring_ && distance < (through ? -kShallow * half_.x() : 0.0)) return distance;
+  const double part = ring_ ? 1.0 : std::min(1.0, height / reach);
+  const Vec3 x = centre_ + part * to_nearest;
   const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
   const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
   if (s < 0.0 || t < 0.0 || s + t > 1.0) return distance;
@@ -152,7 +159,12 @@ void SeenPart::edge(const Shape& b, int index, Nearest& best) const {
     }
     take(t, distance);
   };
-  ring_ ? around_minima(X, V, middle, at, refine) : refine(0.0, 1.0);
+  if (ring_) return around_minima(X, V, middle, at, refine);
+  // A convex function lies above its tangent.
+  double d_middle = 0.0;
+  const double slope = at(middle, d_middle);
+  if (d_middle - std::max(slope * middle, -slope * (1.0 - middle)) >= best.distance) return;
+  slope < 0.0 ? refine(middle, 1.0) : refine(0.0, middle);
 }
 
 SeenPart::Height SeenPart::height_above(const Shape::Plane& plane) const {

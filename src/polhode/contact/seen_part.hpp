@@ -20,6 +20,8 @@ struct Nearest {
 /// A part, see part_of(), as seen from a body b with faces.
 class SeenPart {
  public:
+  enum class Sides { one, two, two_or_through };
+
   template <class T>
   SeenPart(const Shape& part, const Placement<T>& at_a, const Placement<T>& at_b)
       : ring_(is_ring(part)),
@@ -35,9 +37,10 @@ class SeenPart {
 
   /// Nearest point of a plane if it lies in its triangle; where the part penetrates the plane, the
   /// middle of the section.
-  /// @param sides  2: a two-sided triangle.
+  /// @param sides  Of the triangle. `two_or_through`: a ring whose centre is in front of it may
+  ///   also reach through it, but not by much.
   /// @returns the signed distance of the part from the plane.
-  double face(const Shape& b, int triangle, int sides, Nearest& best) const;
+  double face(const Shape& b, int triangle, Sides sides, Nearest& best) const;
   void edge(const Shape& b, int index, Nearest& best) const;
   [[nodiscard]] double corner(const Vec3& x) const;
 

@@ -50,8 +50,6 @@ bool is_of_revolution(const Shape& s, const FeaturePair& f, bool side_a) {
       return true;
     case GapKind::extreme_plane:
     case GapKind::part_triangle:
-    case GapKind::part_edge:
-    case GapKind::part_corner:
     case GapKind::part_surface:
     case GapKind::round_edge:
       return side_a;
@@ -119,7 +117,6 @@ struct PathSeenFromB {
 /// Whether side a of a pair is a part of a shape.
 bool has_part(GapKind kind) {
   return kind == GapKind::part_solid || kind == GapKind::part_triangle ||
-         kind == GapKind::part_edge || kind == GapKind::part_corner ||
          kind == GapKind::part_surface;
 }
 

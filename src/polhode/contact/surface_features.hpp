@@ -36,15 +36,15 @@ struct SurfaceSearch {
   }
 };
 
-/// Nearest points that count at a gap below `reach`, nearest first. Each triangle counts once,
-/// minus each edge shared by two, plus each inner corner. Neighbours with a common nearest point
-/// thus cancel exactly, so that over a flat region one face is left. In order of their gaps the
-/// multiplicities sum to at least one, as over a pit narrower than a ball. @eq{contact-one-gap}
+/// Nearest points at a gap below `reach`, nearest first. Each triangle counts once, minus each edge
+/// shared by two, plus each inner corner. Neighbours with a common nearest point thus cancel
+/// exactly, so that over a flat region one face is left; those with a positive multiplicity are the
+/// places at which the distance from the surface is least.
 ///
 /// @param search  Its triangles are those that may be near; receives the places.
 /// @param seen  triangle(t), edge(e), corner(k) → SurfacePlace.
 template <class Seen>
-void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
+void find_least_places(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
   std::vector<SurfacePlace>& list = search.places;
   list.clear();
   search.edges.clear();
@@ -88,14 +88,26 @@ void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach,
     if (x.gap != y.gap) return x.gap < y.gap;
     return x.kind != y.kind ? x.kind < y.kind : x.index < y.index;
   });
+}
+
+/// Places that count in one gap: in order of their gaps the multiplicities sum to at least one, as
+/// over a pit narrower than a ball. @eq{contact-one-gap}
+template <class Seen>
+void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
+  find_least_places(b, search, reach, seen);
+  std::vector<SurfacePlace>& list = search.places;
   int open = 0, places = 0;
   for (SurfacePlace& p : list) {
     open += p.count;
     p.count = std::max(1, open) - places;
     places += p.count;
   }
-  std::erase_if(list, uncounted);
+  std::erase_if(list, [](const SurfacePlace& p) { return p.count == 0; });
 }
+
+/// Appends the gap of a least place, unless the surface is seen from its inside there.
+void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const Shape& b,
+                      const Placement<double>& at_b, std::vector<Gap<double>>& gaps);
 
 /// One gap with the potential of all, β(g) = (reach − g)³ of each. @eq{contact-one-gap}
 template <class T>

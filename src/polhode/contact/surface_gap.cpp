@@ -51,6 +51,21 @@ Gap<T> over_place(const V3<T>& x, double rho, const Shape& b, const SurfacePlace
   return g;
 }
 
+/// Where the features near the point y of b's coordinates are determined.
+Vec3 aside(const Vec3& y, const Shape& b) {
+  return y + kAside * b.rounding * Vec3(0.618, -0.325, 0.716);
+}
+
+/// Triangles that a ball around the point y may reach.
+SurfaceSearch& triangles_near(const Vec3& y, double round, double reach, const Shape& b) {
+  SurfaceSearch& search = SurfaceSearch::of_this_thread();
+  search.triangles.clear();
+  const double near = (reach + round) * (reach + round);
+  b.tree->visit([&](const auto& box) { return box.squared_distance(y) <= near; },
+                [&](int t) { search.triangles.push_back(t); });
+  return search;
+}
+
 }  // namespace
 
 /// @eq{contact-one-gap}
@@ -58,21 +73,39 @@ template <class T>
 Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
                           const Placement<T>& at_b) {
   const double round = rho + b.rounding;
-  const Vec3 y = at_b.to_body(value(x)) + kAside * b.rounding * Vec3(0.618, -0.325, 0.716);
+  const Vec3 y = aside(at_b.to_body(value(x)), b);
   const TriangleTree::Hit hit = b.tree->nearest(y, std::numeric_limits<double>::infinity());
   const auto nearest = [&] { return over_triangle(x, rho, b, hit.triangle, hit.region, at_b); };
   if (!(hit.distance - round < reach)) return nearest();
-  SurfaceSearch& search = SurfaceSearch::of_this_thread();
-  search.triangles.clear();
-  const double near = (reach + round) * (reach + round);
-  b.tree->visit([&](const auto& box) { return box.squared_distance(y) <= near; },
-                [&](int t) { search.triangles.push_back(t); });
+  SurfaceSearch& search = triangles_near(y, round, reach, b);
   find_places_that_count(b, search, reach, SeenPoint{b, y, round});
-  if (search.places.empty()) return nearest();
-  if (search.places.size() == 1) return over_place(x, rho, b, search.places.front(), at_b);
+  const std::vector<SurfacePlace>& places = search.places;
+  if (places.empty()) return nearest();
+  if (places.size() == 1) return over_place(x, rho, b, places.front(), at_b);
   OneGap<T> sum(reach);
-  for (const SurfacePlace& p : search.places) sum.add(over_place(x, rho, b, p, at_b), p.count);
+  for (const SurfacePlace& p : places) sum.add(over_place(x, rho, b, p, at_b), p.count);
   return sum.gap();
+}
+
+void point_gaps(const Vec3& x, double rho, double reach, const Shape& b,
+                const Placement<double>& at_b, std::vector<Gap<double>>& gaps) {
+  const V3<double> at = constant<double>(x);
+  const double round = rho + b.rounding;
+  const Vec3 y = aside(at_b.to_body(x), b);
+  SurfaceSearch& search = triangles_near(y, round, reach, b);
+  find_least_places(b, search, reach, SeenPoint{b, y, round});
+  for (const SurfacePlace& p : search.places)
+    add_from_outside(over_place(at, rho, b, p, at_b), p, b, at_b, gaps);
+}
+
+void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const Shape& b,
+                      const Placement<double>& at_b, std::vector<Gap<double>>& gaps) {
+  if (place.count <= 0) return;
+  if (place.kind < 2) {
+    const Vec3 outward = place.kind == 0 ? b.planes[place.index].normal : b.edges[place.index].out;
+    if (value(g.normal).dot(value(at_b.vector(outward))) < 0.0) return;
+  }
+  gaps.push_back(g);
 }
 
 template Gap<double> point_over_surface(const V3<double>&, double, double, const Shape&,

@@ -11,6 +11,8 @@ namespace {
 
 /// Relative size of root-finding steps below which they are rounding.
 constexpr double kRootDigits = 1e-15;
+/// Rounding error of a sum of three squares that is 1.
+constexpr double kRound = 4.5e-16;
 
 }  // namespace
 
@@ -97,10 +99,12 @@ double nearest_on_ellipsoid(const Vec3& half, const Vec3& y) {
     return squares;
   };
   double low = -a_min * a_min * (1.0 - 1e-9), high = a_max * y.norm() + 1e-300;
-  double t = 0.0;
+  // No term of the sum is above 1 at the root, from which Newton's method starts below it.
+  double t = std::max(low, (half.cwiseProduct(y.cwiseAbs()) - half.cwiseAbs2()).maxCoeff());
   for (int k = 0; k < 100; ++k) {
     double slope = 0.0;
     const double squares = sum(t, slope);
+    if (std::abs(squares - 1.0) <= kRound) return t;
     (squares > 1.0 ? low : high) = t;
     double next = 0.5 * (low + high);
     if (slope < 0.0) next = t - 2.0 * squares * (std::sqrt(squares) - 1.0) / slope;

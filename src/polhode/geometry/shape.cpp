@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/hull.hpp>
@@ -12,6 +14,13 @@
 #include <polhode/geometry/triangle_tree.hpp>
 
 namespace polhode::contact {
+
+namespace {
+
+/// Largest rounding of a sheet of triangles, as a part of its thickness.
+constexpr double kRoundingOfSheets = 0.1;
+
+}  // namespace
 
 void check_positive(std::string_view where, std::string_view what, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -188,16 +197,22 @@ Shape hull(std::string_view where, std::span<const Vec3> points, const ShapePlac
 Shape mesh(std::string_view where, const TriangleSurface& surface, const ShapePlace& place,
            double rounding) {
   check_extent(where, surface.points);
-  TriangleSurface outside = placed(used_part(surface), place);
+  const TriangleSurface used = used_part(surface);
+  TriangleSurface outside = placed(used, place);
   join_equal_points(outside);
   check_closed(where, outside);
   check_triangles(where, outside);
   orient_outward(outside);
   const double edge = median_edge(outside);
   check_rounding(where, rounding, 0.25 * edge);
+  // A sheet may be thinner than the rounding that goes by its triangles.
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : used.points) box.extend(x);
   Shape s;
   s.solid = Solid::surface;
-  s.rounding = rounding == 0.0 ? kRounding * edge : rounding;
+  s.rounding = rounding;
+  if (rounding == 0.0)
+    s.rounding = std::min(kRounding * edge, kRoundingOfSheets * box.sizes().minCoeff());
   take_triangles(s, shrunk(outside, s.rounding));
   take_convex_corners(s);
   s.tree = std::make_shared<const TriangleTree>(s.corners, s.triangles);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <polhode/surface_contact/combined_gap.hpp>
 #include <polhode/surface_contact/rigid_mesh.hpp>
 
 namespace polhode {
@@ -13,9 +14,6 @@ namespace {
 using contact::TriangleRegion;
 using contact::TriangleTree;
 
-/// Height above the end of the barrier, as a part of its band, below which only the nearest feature
-/// counts. Only iterates get there.
-constexpr double kDeepInRigid = 1e-9;
 /// Offset, as a part of the rounding, at which the nearest features of a point are determined.
 /// Points of meshes often lie exactly over an edge or corner; with the offset neighbouring points
 /// still agree on the features. The gap error is of second order in it.
@@ -172,8 +170,6 @@ RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance)
   return list;
 }
 
-/// Combined gap. With V = Σ w β(gᵢ) and f = −β′ the gap g = β⁻¹(V) has the gradient n = Σ w f(gᵢ)
-/// nᵢ / f(g). @eq{surface-feature-sum} @eq{surface-feature-holes}
 SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
                           const GapQuery& question) const {
   const contact::NormalLaw& law = question.law;
@@ -185,30 +181,7 @@ SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
     if (g.value < law.reach()) near.emplace_back(g, f.count);
   }
   if (near.empty()) return {law.reach(), nearest.normal, nearest.curvature};
-  if (near.size() == 1) return near.front().first;
-  std::stable_sort(near.begin(), near.end(),
-                   [](const auto& a, const auto& b) { return a.first.value < b.first.value; });
-  double V = 0.0;
-  Vec3 force = Vec3::Zero();
-  Mat3 stiffness = Mat3::Zero();
-  int open = 0, places = 0;  // of the features so far, and of the counted ones
-  for (const auto& [g, count] : near) {
-    open += count;
-    const int w = std::max(1, open) - places;
-    places += w;
-    if (w == 0) continue;
-    const contact::NormalLaw::WithSlope one = law.force_and_slope(g.value);
-    V += w * law.energy(g.value);
-    force += w * one.value * g.normal;
-    stiffness += w * (one.slope * g.normal * g.normal.transpose() + one.value * g.curvature);
-  }
-  SurfaceGap g;
-  g.value = law.gap_of(V);
-  const contact::NormalLaw::WithSlope all = law.force_and_slope(g.value);
-  if (!(all.value > 0.0)) return nearest;
-  g.normal = force / all.value;
-  g.curvature = (stiffness - all.slope * g.normal * g.normal.transpose()) / all.value;
-  return g;
+  return combined_gap(law, near, nearest);
 }
 
 SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuery& question) const {

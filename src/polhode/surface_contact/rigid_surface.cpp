@@ -4,11 +4,15 @@
 #include <limits>
 
 #include <polhode/contact/gap.hpp>
+#include <polhode/surface_contact/combined_gap.hpp>
 #include <polhode/surface_contact/rigid_surface.hpp>
 
 namespace polhode {
 
 namespace {
+
+/// Smallest distance from the axis of a tube, as a part of its bore, for directions.
+constexpr double kOffAxis = 1e-7;
 
 /// Nearest point of a core, and its derivative.
 struct Nearest {
@@ -75,7 +79,37 @@ RigidSurface::Gap RigidSurface::gap(const Vec3& y, const GapQuery& question) con
   if (kind == Kind::mesh) return triangles->gap(y, question);
   Gap g = plain_gap(y);
   g.value -= question.radius;
-  return g;
+  const contact::NormalLaw& law = question.law;
+  const bool deep = g.value < law.floor() + kDeepInRigid * 2.0 * law.tolerance;
+  if (kind != Kind::tube || !(g.value < law.reach()) || deep) return g;
+  // A thick cable in the bore or its mouth touches both sides. Their directions follow the point,
+  // which therefore does not count as on the axis.
+  const double off = kOffAxis * half[1];
+  const Vec3 beside = std::hypot(y[0], y[1]) < off ? Vec3(off, 0.0, y[2]) : y;
+  Gap far = far_side(beside);
+  far.value -= question.radius;
+  if (!(far.value < law.reach())) return g;
+  g = plain_gap(beside);
+  g.value -= question.radius;
+  std::vector<std::pair<Gap, int>> sides{{g, 1}, {far, 1}};
+  return combined_gap(law, sides, g);
+}
+
+/// Gap of a point off the axis, in the bore of a tube or in front of it, to the side beyond the
+/// axis.
+RigidSurface::Gap RigidSurface::far_side(const Vec3& y) const {
+  const double bore = half[1] + rounding, end = half[2] - rounding;
+  const double rho = std::hypot(y[0], y[1]);
+  if (!(rho < bore)) return {std::numeric_limits<double>::infinity(), Vec3::UnitZ(), Mat3::Zero()};
+  const Vec3 out(y[0] / rho, y[1] / rho, 0.0), t(-out[1], out[0], 0.0);
+  Nearest core;
+  core.point = -bore * out;
+  core.D = -bore / rho * t * t.transpose();
+  clamp_along(y, 2, end, core);
+  const Vec3 from = y - core.point;
+  const double d = from.norm();
+  const Vec3 n = from / d;
+  return {d - rounding, n, (Mat3::Identity() - core.D - n * n.transpose()) / d};
 }
 
 double RigidSurface::distance(const Vec3& y, double at_most, bool sided) const {

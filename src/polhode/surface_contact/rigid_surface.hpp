@@ -11,7 +11,7 @@ namespace polhode {
 ///
 /// Gaps are distances to a core (plane, point, segment, disc, box) minus a radius, so they and
 /// their gradients are continuous; edges are rounded by `rounding`. A tube is a rectangle rotated
-/// about its axis; its gradient jumps only there. Other nonconvex shapes are surfaces of triangles,
+/// about its axis, near which both sides count. Other nonconvex shapes are surfaces of triangles,
 /// see RigidMesh.
 struct RigidSurface {
   enum class Kind : unsigned char {
@@ -45,6 +45,7 @@ struct RigidSurface {
 
  private:
   [[nodiscard]] Gap plain_gap(const Vec3& y) const;
+  [[nodiscard]] Gap far_side(const Vec3& y) const;
 };
 
 }  // namespace polhode

@@ -24,8 +24,9 @@ struct ImpulsePoint {
   Vec3 normal = Vec3::UnitZ();  ///< From b to a, middle of the step.
   /// Point [m] at which the displacement along the normal is the change of the gap.
   Vec3 place = Vec3::Zero();
-  double gap = 0.0;   ///< At t_n [m].
-  double rate = 0.0;  ///< Of the gap at t_n [m/s].
+  Vec3 normal_n = Vec3::UnitZ(), place_n = Vec3::Zero();  ///< At t_n.
+  double gap = 0.0;                                       ///< At t_n [m].
+  double rate = 0.0;                                      ///< Of the gap at t_n [m/s].
   /// Of a relative to b at the contact point at t_n [m/s].
   Vec3 velocity = Vec3::Zero();
   double restitution = 0.0, friction = 0.0;  ///< [-]

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Places at which a corner or part touches a surface of triangles, for impulses.
+#pragma once
+
+#include <vector>
+
+#include <polhode/contact/gap.hpp>
+
+namespace polhode::contact {
+
+/// Cosine of the angle between the normals at the middle and the start of the step below which the
+/// bodies would pass each other.
+inline constexpr double kPasses = 0.5;
+
+/// Whether a pair may be in contact at several places of a surface of triangles.
+[[nodiscard]] inline bool is_over_surface(GapKind kind) {
+  return kind == GapKind::point_surface || kind == GapKind::part_surface;
+}
+
+/// The gap with the normal closest to n, if they belong to one contact; null: there is none.
+[[nodiscard]] const Gap<double>* same_contact(const std::vector<Gap<double>>& gaps, const Vec3& n);
+
+/// Displacement of a relative to b over the step at a place in the middle of it.
+[[nodiscard]] inline Vec3 apart(const BodyStep& a, const BodyStep& b, const Vec3& place) {
+  return a.u + a.theta.cross(place - a.r_n - 0.5 * a.u) - b.u -
+         b.theta.cross(place - b.r_n - 0.5 * b.u);
+}
+
+}  // namespace polhode::contact
