@@ -127,7 +127,7 @@ TEST(NonsmoothSurface, ABallStaysInAPocket) {
   for (const double half : {0.0501, 0.051, 0.06}) {
     write_obj(folder / "pocket.obj", pocket(half));
     for (const double speed : {1.5, 10.0})
-      for (const double step : {1e-2, 5e-3, 1e-3}) {
+      for (const double step : {1e-2, 5e-3, 1e-3, 1e-4}) {
         Scene scene{format("  a: {{shape: {{sphere: 0.1}}, mass: 1, position: [0, 0, 0.09], "
                            "velocity: [0, 0, {}]}}",
                            -speed),
@@ -157,7 +157,7 @@ TEST(NonsmoothSurface, ASheetIsThePlaneOfItsUpperSide) {
     const std::string sheet =
         format("  floor: {{fixed: true, shape: {{mesh: {}}}}}\n", folder / "sheet.obj");
     for (const Moving& moving : kMoving)
-      for (const double step : {1e-2, 1e-3}) {
+      for (const double step : {1e-2, 1e-3, 1e-4}) {
         const BodyMotion plane = end_of(moving, "", step), flat = end_of(moving, sheet, step);
         EXPECT_LT((flat.r - plane.r).norm(), moving.close) << moving.name << ' ' << step;
         EXPECT_LT((flat.v - plane.v).norm(), moving.close) << moving.name << ' ' << step;
@@ -169,7 +169,7 @@ TEST(NonsmoothSurface, ASheetIsThePlaneOfItsUpperSide) {
 /// radius R cos φ.
 TEST(NonsmoothSurface, ABallRollsDownAGrooveOnBothSides) {
   for (const double side : {0.2, 0.6, 1.2})
-    for (const double step : {1e-2, 5e-3, 1e-3}) {
+    for (const double step : {1e-2, 5e-3, 1e-3, 1e-4}) {
       const double cell = 0.1, rise = cell * std::tan(side), slope = 0.1;
       std::string rows;
       for (const double z : {2.0 * rise, rise, 0.0, rise, 2.0 * rise}) {

@@ -26,9 +26,9 @@ struct OrderedPair {
 /// `distance`, sorted by key. Shapes that are both planes have none.
 ///
 /// Corners of each shape are paired with the solid of the other, edges with edges; round solids
-/// with planes at their extreme points, with edges, with each other, and with the discs at the ends
-/// of straight sides, which carry where these are parallel. A tube is represented by its hull, its
-/// rims and its inner side.
+/// with planes at their extreme points, with edges, and with each other. Parallel straight sides
+/// are in contact at the discs at their ends. A tube is represented by the cylinder between its
+/// outer rims, by its rims and by its inner side.
 /// @eq{contact-sum-of-features}
 void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
                         const Placement<double>& at_second, double distance,

@@ -74,8 +74,8 @@ template <class T>
 [[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho, const Shape& b,
                                       const Placement<T>& at_b);
 
-/// Part of the round solid a that can come near faces, as an ellipsoid: the whole of an ellipsoid;
-/// of a cylinder or cone a slightly convex disc at its end `which`; of a tube its outer rim.
+/// Part of the round solid a for contact with faces: an ellipsoid itself, a slightly convex disc at
+/// the end `which` of a cylinder or cone, or the outer rim of a tube there.
 [[nodiscard]] Shape part_of(const Shape& a, int which);
 
 /// Directions compared by a Fade, fixed to a and b (of any constant length).

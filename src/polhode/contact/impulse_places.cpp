@@ -53,7 +53,7 @@ void ContactSet::find_places(int point, std::span<const BodyStep> steps, double 
   const Point& p = points_[point];
   const BodyStep &a = steps[balls_[point].a], &b = steps[balls_[point].b];
   if (!again && 2.0 * least_gap_at_end(p, a, b) > p.gap_n) return;
-  // Of those at the end only overlaps matter.
+  // Search radii: the way of two steps at the start; at the end only overlaps are needed.
   const double touch = surface_reach(*p.data.a, *p.data.b),
                way = p.gap_n - least_gap_at_end(p, a, b);
   PlacesAtStart& known = start_places_[point];
@@ -75,7 +75,7 @@ void ContactSet::find_places(int point, std::span<const BodyStep> steps, double 
     };
   };
   bool stopped = false;
-  const Gap<double>* pressed = nullptr;  // where it acted in the last step
+  const Gap<double>* pressed = nullptr;  // place of the impulse of the last step
   double most = -1.0;
   for (const Gap<double>& g : at_start)
     if (const double y = value(g.normal).dot(p.data.history.impulse); again && y > most)
@@ -93,7 +93,7 @@ void ContactSet::find_places(int point, std::span<const BodyStep> steps, double 
     list.push_back(at);
     stopped = true;
   }
-  // Without these impulses it may be beyond the surface at the end.
+  // The end of the step is unknown without these impulses.
   if (stopped) return;
   for (const Gap<double>& g : at_end) {
     const Vec3 n = value(g.normal);

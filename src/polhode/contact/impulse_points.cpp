@@ -76,8 +76,8 @@ bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<do
 }
 
 /// Placement at the middle of a step. The mean of both orientations is not a rotation, but carries
-/// points by exactly u + θ × z̄ over the step. Half the rotation keeps sizes, on which the distances
-/// of a round part from edges rely.
+/// points by exactly u + θ × z̄ over the step. Half the rotation keeps the sizes of round parts, for
+/// their distances from edges.
 struct Middle {
   Vec3 r;
   Mat3 Lambda;

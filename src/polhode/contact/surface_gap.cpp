@@ -51,7 +51,7 @@ Gap<T> over_place(const V3<T>& x, double rho, const Shape& b, const SurfacePlace
   return g;
 }
 
-/// Where the features near the point y of b's coordinates are determined.
+/// Point, slightly beside y, at which the features near y are determined; coordinates of b.
 Vec3 aside(const Vec3& y, const Shape& b) {
   return y + kAside * b.rounding * Vec3(0.618, -0.325, 0.716);
 }

@@ -13,7 +13,7 @@ SurfaceGap combined_gap(const contact::NormalLaw& law,
   double V = 0.0;
   Vec3 force = Vec3::Zero();
   Mat3 stiffness = Mat3::Zero();
-  int open = 0, places = 0;  // of the features so far, and of the counted ones
+  int open = 0, places = 0;  // multiplicities of the features so far, and those counted
   for (const auto& [g, count] : near) {
     open += count;
     const int w = std::max(1, open) - places;
