@@ -19,12 +19,12 @@ export async function shoot(view: View, player: Player, app: HTMLElement, holder
     const from = Math.max(player.begin, how.from ?? player.begin), to = Math.min(player.end, how.to ?? player.end);
     if (!(to >= from)) throw new Error(`there are no frames between ${how.from ?? player.begin} and ${how.to ?? player.end} s; the recording goes from ${player.begin} to ${player.end} s`);
     app.classList.add("film");
-    stage.renderer.setPixelRatio(1);
+    stage.renderer?.setPixelRatio(1);
     stage.fixedSize = [how.width, how.height];
     if (stage.looking) stage.view(stage.looking); else stage.resize();
     stage.looking = null;
     if (how.link) follow(how.link, view, player);
-    const canvas = stage.renderer.domElement, flat = document.createElement("canvas"), context = flat.getContext("2d", { willReadFrequently: true }) as CanvasRenderingContext2D;
+    const { canvas } = stage, flat = document.createElement("canvas"), context = flat.getContext("2d", { willReadFrequently: true }) as CanvasRenderingContext2D;
     Object.assign(flat, { width: how.width, height: how.height });
     const count = Math.max(1, Math.round((to - from) / how.speed * how.rate) + 1), pictures: Picture[] = [];
     for (let k = 0, turned = 0; k < count; k++) {
@@ -34,6 +34,7 @@ export async function shoot(view: View, player: Player, app: HTMLElement, holder
       controls.update();
       player.seek(from + part * (to - from));
       stage.draw();
+      if (stage.renderer?.getContext().isContextLost() ?? true) throw new Error("this browser cannot draw in 3D: WebGL 2 is off, not available, or has stopped; name another Chromium with CHROMIUM");
       context.drawImage(canvas, 0, 0, how.width, how.height);
       if (how.kind === "gif") pictures.push({ width: how.width, height: how.height, rgba: context.getImageData(0, 0, how.width, how.height).data });
       else await send(`${String(k).padStart(5, "0")}.png`, await new Promise<Blob>((resolve, reject) => flat.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The browser returned no picture."))))));

@@ -41,7 +41,7 @@ async function start(app: HTMLElement): Promise<void> {
   const view = await View.of(scene, holder);
   const other = m.compared ? await Scene.load(true) : null;
   if (other) view.compare(await Ghost.of(other, m.compared ?? ""));
-  const canvas = view.stage.renderer.domElement;
+  const { canvas } = view.stage;
   canvas.setAttribute("tabindex", "0");
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${m.title || "Model"}: ${m.bodies.length} bodies, ${m.joints.length} joints in motion. Drag to rotate, scroll to zoom.`);
@@ -119,7 +119,9 @@ async function start(app: HTMLElement): Promise<void> {
     h("p", { class: "faint" }, `Polhode ${m.source.version}. ${m.frames} frames${m.frames < m.file_frames ? ` of ${m.file_frames} in the file` : ""}.`), h("button", { type: "button", onclick: () => help.close() }, "Close"));
   document.body.append(help);
   const picture = (): void => { view.stage.draw(); canvas.toBlob((blob) => { if (blob) save("picture.png", blob); }); };
-  head.append(h("button", { type: "button", class: "optional", onclick: picture }, "Picture"), h("button", { type: "button", class: "optional", onclick: () => link() }, "Link"), togglePanel, h("button", { type: "button", "aria-label": "Keyboard help", onclick: () => help.showModal() }, "?"));
+  const pictureButton = h("button", { type: "button", class: "optional", onclick: picture }, "Picture");
+  (view.stage.onblank = () => { pictureButton.disabled = view.stage.blank; })();
+  head.append(pictureButton, h("button", { type: "button", class: "optional", onclick: () => link() }, "Link"), togglePanel, h("button", { type: "button", "aria-label": "Keyboard help", onclick: () => help.showModal() }, "?"));
   const link = (): void => { location.hash = bookmarkOf(view, player); void navigator.clipboard?.writeText(location.href).catch(() => undefined); };
 
   const play = h("button", { type: "button", "aria-label": "Play", onclick: () => player.toggle() }, "▶");

@@ -2,13 +2,17 @@
 // Shading of surfaces, and rendering effort by the machine.
 import { MeshLambertMaterial, MeshStandardMaterial, type MeshStandardMaterialParameters } from "three";
 
-/** Whether rendering is in software: then the effects that cost most per pixel are off. */
-export const software = ((): boolean => {
+/** Name of the graphics processor, or of the software that stands for it; null without WebGL 2. */
+const renderedBy = ((): string | null => {
   const context = document.createElement("canvas").getContext("webgl2"), names = context?.getExtension("WEBGL_debug_renderer_info");
   const name = context && names ? String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
   context?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  return context && name;
 })();
+/** Whether the browser can draw in 3D. */
+export const drawable = renderedBy !== null;
+/** Whether rendering is in software: then the effects that cost most per pixel are off. */
+export const software = /swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderedBy ?? "");
 
 export type Surface = MeshStandardMaterial | MeshLambertMaterial;
 

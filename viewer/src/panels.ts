@@ -135,7 +135,7 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
     plane.normal.set(0, 0, 0);
     if (k >= 0) plane.normal.setComponent(k, -1);
     plane.constant = k >= 0 ? view.stage.controls.target.getComponent(k) + offset * view.stage.size : 0;
-    view.stage.renderer.clippingPlanes = k >= 0 ? [plane] : [];
+    if (view.stage.renderer) view.stage.renderer.clippingPlanes = k >= 0 ? [plane] : [];
     view.bodies.setOpen(k >= 0);
     update();
   };

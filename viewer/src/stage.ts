@@ -4,16 +4,23 @@ import {
   Plane, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { kUnseen } from "./bodies";
-import { software } from "./materials";
+import { h } from "./dom";
+import { drawable, software } from "./materials";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 export const kDark = { background: "#14191f", grid: "#34404b", line: "#e6ebef" };
 export const kLight = { background: "#f2f5f7", grid: "#c3ccd4", line: "#22303c" };
 
+/** Texts in place of the picture: without WebGL 2, and from the loss of its context to the return. */
+const kNone = "This browser cannot draw in 3D: WebGL 2 is off or not available. Turn on hardware acceleration, or open the page in another browser. Plots and values are shown without it.";
+const kLost = "The browser has stopped drawing in 3D. The picture returns when the browser can draw again; if it does not, reload the page.";
+
 /** Renderer, lights, ground grid, axes and cameras. */
 export class Stage {
   readonly world = new World();
-  readonly renderer: WebGLRenderer;
+  readonly canvas = h("canvas");
+  /** The renderer; null in a browser that cannot draw in 3D. */
+  readonly renderer: WebGLRenderer | null;
   readonly perspective = new PerspectiveCamera(35, 1, 0.01, 1000);
   readonly parallel = new OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
   camera: PerspectiveCamera | OrthographicCamera = this.perspective;
@@ -31,25 +38,51 @@ export class Stage {
   fixedSize: [number, number] | null = null;
   /** Two pictures side by side with one camera; called with 0 and 1 before each is drawn, and with −1 afterwards. */
   halves: ((half: number) => void) | null = null;
+  private readonly instead = h("p", { class: "instead", role: "alert", hidden: true });
+  /** Called when the picture is replaced by a text, and when it returns. */
+  onblank: () => void = () => undefined;
 
   constructor(readonly holder: HTMLElement, readonly up: Vector3, shadows: boolean) {
-    this.renderer = new WebGLRenderer({ antialias: !software, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
-    this.renderer.debug.checkShaderErrors = false;  // to ask for them waits until all are compiled
-    this.renderer.shadowMap.enabled = true;  // costs nothing while no light casts any
-    this.renderer.shadowMap.type = PCFShadowMap;
-    holder.prepend(this.renderer.domElement);
+    holder.prepend(this.canvas, this.instead);
+    this.renderer = this.makeRenderer();
+    if (!this.renderer) this.explain(kNone);
     for (const camera of [this.perspective, this.parallel]) camera.up.copy(up);
     this.world.add(new HemisphereLight(0xffffff, 0xa8b2bb, 1.9), new AmbientLight(0xffffff, 0.5), this.sun, this.sun.target, this.grid, this.axes);
     this.sun.castShadow = shadows && !software;
     this.sun.shadow.mapSize.set(1024, 1024);
-    this.controls = new OrbitControls(this.perspective, this.renderer.domElement);
+    this.controls = new OrbitControls(this.perspective, this.canvas);
     const before = new Vector3();  // a click alone moves no camera
     this.controls.addEventListener("start", () => { before.copy(this.camera.position); });
     this.controls.addEventListener("end", () => { if (this.camera.position.distanceTo(before) > 1e-9 * this.size) this.looking = null; });
     this.controls.addEventListener("change", () => { this.dirty = true; });
     new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); }).observe(holder);
   }
+
+  private makeRenderer(): WebGLRenderer | null {
+    if (!drawable) return null;
+    try {
+      const renderer = new WebGLRenderer({ canvas: this.canvas, antialias: !software, preserveDrawingBuffer: true });
+      renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
+      renderer.debug.checkShaderErrors = false;  // to ask for them waits until all are compiled
+      renderer.shadowMap.enabled = true;  // costs nothing while no light casts any
+      renderer.shadowMap.type = PCFShadowMap;
+      // These come after the renderer's own listeners, which ask for the context back and then make its objects again.
+      this.canvas.addEventListener("webglcontextlost", () => this.explain(kLost));
+      this.canvas.addEventListener("webglcontextrestored", () => this.explain(""));
+      return renderer;
+    } catch { return null; }
+  }
+
+  /** Shows a text in place of the picture; the picture again if it is empty. */
+  private explain(text: string): void {
+    this.instead.textContent = text;
+    this.instead.hidden = text === "";
+    this.holder.classList.toggle("blank", this.blank);
+    this.dirty = true;
+    this.onblank();
+  }
+  /** Whether a text stands in place of the picture. */
+  get blank(): boolean { return !this.instead.hidden; }
 
   /** Fits light, grid and cameras to the extent of the scene. */
   fit(box: Box3): void {
@@ -165,7 +198,7 @@ export class Stage {
 
   resize(): void {
     const [all, height] = this.fixedSize ?? [Math.max(1, this.holder.clientWidth), Math.max(1, this.holder.clientHeight)], width = this.halves ? Math.max(1, all / 2) : all;
-    this.renderer.setSize(all, height);
+    this.renderer?.setSize(all, height);
     this.perspective.aspect = width / height;
     this.perspective.updateProjectionMatrix();
     const half = 0.6 * this.size, wide = half * width / height;
@@ -182,12 +215,12 @@ export class Stage {
 
   /** Reduces the rendering effort on slow machines: fewer pixels. */
   lighten(): void {
-    if (this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
+    if (this.renderer && this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
     this.resize();
   }
 
   ray(x: number, y: number): Raycaster {
-    const box = this.renderer.domElement.getBoundingClientRect();
+    const box = this.canvas.getBoundingClientRect();
     const caster = new Raycaster(), width = this.halves ? box.width / 2 : box.width;
     caster.setFromCamera(new Vector2(2 * ((x - box.left) % width) / width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
     caster.layers.enable(kUnseen);
@@ -197,13 +230,15 @@ export class Stage {
 
   /** Half of the window that contains a point: 0, or 1 for the right one of two. */
   halfAt(x: number): number {
-    const box = this.renderer.domElement.getBoundingClientRect();
+    const box = this.canvas.getBoundingClientRect();
     return this.halves && x - box.left > box.width / 2 ? 1 : 0;
   }
 
   draw(): void {
-    const { renderer } = this, { width, height } = renderer.getSize(new Vector2());
+    const { renderer } = this;
     this.dirty = false;
+    if (!renderer) return;
+    const { width, height } = renderer.getSize(new Vector2());
     renderer.setScissorTest(this.halves !== null);
     if (!this.halves) {
       renderer.setViewport(0, 0, width, height);

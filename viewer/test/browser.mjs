@@ -6,9 +6,9 @@ import { chromium } from "playwright-core";
 
 export const program = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((p) => p && existsSync(p));
 
-export async function launch() {
+export async function launch(args = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]) {
   if (!program) return null;
-  return chromium.launch({ executablePath: program, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"] });
+  return chromium.launch({ executablePath: program, args: ["--no-sandbox", ...args] });
 }
 
 /** A page that notes every message of the console, every fault and every request to a network. */

@@ -23,9 +23,9 @@ export const folder = mkdtempSync(join(tmpdir(), "polhode-viewer-"));
 /** Runs the program in the folder of the tests. @returns what it writes to stdout */
 export const run = (...words) => execFileSync(polhode, words, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] }).toString();
 
-/** What the program says when it refuses; "nothing" if it does not. */
+/** What the program says when it refuses; "nothing" if it does not, or not in two minutes. */
 export const refusal = (words, env = {}) => {
-  try { execFileSync(polhode, words, { cwd: folder, stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...env } }); return "nothing"; } catch (error) { return error.stderr.toString(); }
+  try { execFileSync(polhode, words, { cwd: folder, stdio: ["ignore", "pipe", "pipe"], timeout: 120000, env: { ...process.env, ...env } }); return "nothing"; } catch (error) { return error.stderr.toString() || "nothing"; }
 };
 
 /** A server of `polhode view`, at its address while `body` goes on. */
@@ -89,9 +89,9 @@ export function made(page) {
 
 const counts = { passed: 0, failed: 0 }, open = [];
 
-/** A page of the folder, or at an address, in a context of its own. */
-export async function page_of(name, options) {
-  const opened = await openPage(browser, name.startsWith("http") ? name : join(folder, made(name.split("#")[0]) + (name.includes("#") ? "#" + name.split("#")[1] : "")), options);
+/** A page of the folder, or at an address, in a context of its own, also of another browser. */
+export async function page_of(name, options, within = browser) {
+  const opened = await openPage(within, name.startsWith("http") ? name : join(folder, made(name.split("#")[0]) + (name.includes("#") ? "#" + name.split("#")[1] : "")), options);
   open.push(opened);
   return opened;
 }
