@@ -31,7 +31,7 @@ TEST_F(CommandLine, CertifiesAModelWithATableAPictureAndNumbers) {
   EXPECT_FALSE(exists("model.certificate/results.h5"));
 }
 
-TEST_F(CommandLine, CertifiesForScripts) {
+TEST_F(CommandLine, CertifiesWithJsonOutput) {
   const auto result = run({"certify", "model.yaml", "--json", "--quiet", "-o", "kept"});
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(result.err, "");
@@ -60,7 +60,7 @@ TEST_F(CommandLine, EndsWith6WhereAnErrorBarIsTooWide) {
 }
 
 // Released level, the double pendulum of the fixture is chaotic.
-TEST_F(CommandLine, EndsWith6AndSaysFromWhenOnNothingConverges) {
+TEST_F(CommandLine, EndsWith6AndReportsWhenConvergenceIsLost) {
   const auto result = run({"certify", "model.yaml", "--json", "--set", "analysis.duration=60 s"});
   EXPECT_EQ(result.code, 6) << result.err;
   EXPECT_THAT(result.err, testing::ContainsRegex(
@@ -85,7 +85,7 @@ TEST_F(CommandLine, RunsAndCertifiesInOne) {
   EXPECT_FALSE(exists("model.results/certificate.svg"));
 }
 
-TEST_F(CommandLine, RefusesToCertifyWhatTakesNoSteps) {
+TEST_F(CommandLine, RefusesToCertifyAnalysesWithoutTimeSteps) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"certify", "model.yaml"}, {"run", "model.yaml", "--certify"}}) {
     std::vector<std::string> all = words;
@@ -96,14 +96,14 @@ TEST_F(CommandLine, RefusesToCertifyWhatTakesNoSteps) {
   }
 }
 
-TEST_F(CommandLine, StopsACertificateAtTheWallLimit) {
+TEST_F(CommandLine, StopsCertifyingAtTheWallLimit) {
   const auto result = run({"certify", "model.yaml", "--wall-limit", "0"});
   EXPECT_EQ(result.code, 75);
   EXPECT_THAT(result.err, HasSubstr("Stopped at the wall-time limit; nothing is certified."));
   EXPECT_FALSE(exists("model.certificate"));
 }
 
-TEST_F(CommandLine, SaysShortlyThatAWallLimitIsNotNegative) {
+TEST_F(CommandLine, RefusesANegativeWallLimitInOneLine) {
   for (const char* command : {"run", "certify"}) {
     const auto result = run({command, "model.yaml", "--wall-limit", "-1"});
     EXPECT_EQ(result.code, 2);
@@ -113,7 +113,7 @@ TEST_F(CommandLine, SaysShortlyThatAWallLimitIsNotNegative) {
   }
 }
 
-TEST_F(CommandLine, LeavesNothingOfAnEarlierRunInTheResultsFolder) {
+TEST_F(CommandLine, RemovesResultsOfAnEarlierRunFromTheFolder) {
   ASSERT_EQ(run({"run", "model.yaml", "--quiet", "--set", "output.every=10 ms"}).code, 0);
   ASSERT_TRUE(exists("model.results/paraview/results/000100.vtp"));
   write("model.results/notes.txt", "mine");

@@ -51,7 +51,7 @@ output:
   EXPECT_THAT(shown.out, AllOf(HasSubstr("load carried"), HasSubstr("stable")));
 }
 
-TEST_F(CommandLine, EndsWith4AndNamesWhatNothingHolds) {
+TEST_F(CommandLine, EndsWith4AndNamesAnUnsupportedBody) {
   write("stone.yaml", R"(format: 1
 gravity: [0, 0, -10]
 bodies:
@@ -65,7 +65,7 @@ analysis: {type: statics}
 }
 
 /// Equilibrium of a slack cable: its tangent stiffness is zero, so relaxation finds the shape.
-TEST_F(CommandLine, FindsTheShapeOfASlackCableAndSaysHow) {
+TEST_F(CommandLine, FindsTheShapeOfASlackCableAndReportsTheMethod) {
   write("slack.yaml", R"(format: 1
 gravity: [0, 0, -9.81]
 cables:

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-TEST_F(CommandLine, HelpsWithAMistypedCommand) {
+TEST_F(CommandLine, SuggestsACommandForAMisspeltOne) {
   const auto result = run({"rum", "model.yaml"});
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.err,
@@ -27,13 +27,13 @@ TEST_F(CommandLine, HelpsWithAMistypedCommand) {
             "--help' for its options.\n");
 }
 
-TEST_F(CommandLine, HelpsWithAMistypedOption) {
+TEST_F(CommandLine, SuggestsAnOptionForAMisspeltOne) {
   const auto result = run({"run", "model.yaml", "--jsn"});
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, HasSubstr("does not take '--jsn'. Did you mean '--json'?"));
 }
 
-TEST_F(CommandLine, WantsAModel) {
+TEST_F(CommandLine, RequiresAModel) {
   const auto result = run({"run"});
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, StartsWith("polhode run: "));
@@ -45,7 +45,7 @@ TEST_F(CommandLine, EndsWith5ForAMissingFile) {
   EXPECT_THAT(result.err, HasSubstr("absent.yaml: cannot be opened (No such file or directory)"));
 }
 
-TEST_F(CommandLine, EndsWith3ForAWrongModelAndNamesThePlace) {
+TEST_F(CommandLine, EndsWith3ForAnInvalidModelAndNamesTheLocation) {
   write("bad.yaml", "format: 1\nbodies:\n  a: {mass: -1, inertia: [1, 1, 1]}\n");
   for (const char* command : {"run", "check", "info"}) {
     const auto result = run({command, "bad.yaml"});
@@ -63,7 +63,7 @@ TEST_F(CommandLine, EndsWith5WhenResultsCannotBeWritten) {
   EXPECT_THAT(result.err, HasSubstr("taken/results"));
 }
 
-TEST_F(CommandLine, RunsAndWritesWhatTheModelAsksFor) {
+TEST_F(CommandLine, RunsAndWritesTheOutputsOfTheModel) {
   const auto result = run({"run", "model.yaml"});
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("energy drift"), HasSubstr("steps")));
@@ -82,7 +82,7 @@ TEST_F(CommandLine, RunsAndWritesWhatTheModelAsksFor) {
   EXPECT_EQ(std::count(hinge.begin(), hinge.end(), '\n'), 52);  // By output.every, 20 ms.
 }
 
-TEST_F(CommandLine, PrintsOneJsonObjectAndKeepsQuiet) {
+TEST_F(CommandLine, PrintsOneJsonObjectAndNothingElse) {
   const auto result = run({"run", "model.yaml", "--json", "--quiet", "-o", "out"});
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(result.err, "");
@@ -190,13 +190,13 @@ TEST_F(CommandLine, LeavesReadableFilesWhenItIsKilled) {
   EXPECT_EQ(rest.code, 75) << rest.err;
 }
 
-TEST_F(CommandLine, RefusesAnInstructionSetThatIsNone) {
+TEST_F(CommandLine, RefusesAnUnknownInstructionSet) {
   const auto result = run({"run", "model.yaml", "--isa", "avx1024"});
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, HasSubstr("--isa"));
 }
 
-TEST_F(CommandLine, RefusesACheckpointThatIsNone) {
+TEST_F(CommandLine, RefusesAFileThatIsNoCheckpoint) {
   const auto result = run({"run", "model.yaml", "--restart", "model.yaml"});
   EXPECT_EQ(result.code, 3);
   EXPECT_THAT(result.err, HasSubstr("model.yaml: is not a Polhode checkpoint"));
@@ -211,7 +211,7 @@ TEST_F(CommandLine, ChecksMobilityAndTangents) {
   EXPECT_EQ(value(result.out, "passed"), "true");
 }
 
-TEST_F(CommandLine, SaysWhatPrescribesAllMotion) {
+TEST_F(CommandLine, NamesWhatPrescribesAllMotion) {
   const auto model = [](const char* shaft) {
     return std::string(R"yaml(format: 1
 bodies:
@@ -252,7 +252,7 @@ analysis: {duration: 0.1 s, step: 10 ms}
   EXPECT_THAT(result.err, AllOf(HasSubstr("'low'"), HasSubstr("'high'")));
 }
 
-TEST_F(CommandLine, TellsWhatAModelHoldsAndWhichKindsExist) {
+TEST_F(CommandLine, ReportsTheContentsOfAModelAndTheKindsThatExist) {
   const auto info = run({"info", "model.yaml"});
   ASSERT_EQ(info.code, 0) << info.err;
   EXPECT_THAT(info.out, AllOf(HasSubstr("upper"), HasSubstr("2.5"), HasSubstr("spherical"),
@@ -286,7 +286,7 @@ TEST_F(CommandLine, ListsAndWritesExamples) {
   EXPECT_EQ(run({"examples", "chain", "--set", "M=3"}).code, 2);
 }
 
-TEST_F(CommandLine, FindsItselfWell) {
+TEST_F(CommandLine, PassesItsOwnDiagnosis) {
   const auto result = run({"doctor"});
   EXPECT_EQ(result.code, 0) << result.out;
   EXPECT_THAT(result.out, Not(HasSubstr("FAILED")));

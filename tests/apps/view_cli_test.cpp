@@ -20,7 +20,7 @@ using testing::Not;
 
 using ViewCommand = test::CommandLine;
 
-TEST_F(ViewCommand, WritesOnePageThatNeedsNothingElse) {
+TEST_F(ViewCommand, WritesOneSelfContainedPage) {
   ASSERT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
   const test::ProgramResult r = run({"view", "model.results", "--html", "page.html"});
   EXPECT_EQ(r.code, 0);
@@ -41,12 +41,12 @@ TEST_F(ViewCommand, ShowsAModelBeforeItRuns) {
   EXPECT_FALSE(exists("model.results"));
 }
 
-TEST_F(ViewCommand, ARunMayEndWithAPage) {
+TEST_F(ViewCommand, WritesAPageAtTheEndOfARun) {
   EXPECT_EQ(run({"run", "model.yaml", "--quiet", "--view"}).code, 0);
   EXPECT_TRUE(exists("model.results/view.html"));
 }
 
-TEST_F(ViewCommand, SaysWhatIsWrong) {
+TEST_F(ViewCommand, ReportsErrors) {
   EXPECT_EQ(run({"view", "missing.h5", "--html", "x.html"}).code, 5);
   EXPECT_EQ(run({"view", "missing.yaml", "--html", "x.html"}).code, 5);
   write("wrong.yaml", "format: 1\nbodies: {a: {mas: 1}}\n");
@@ -99,7 +99,7 @@ TEST_F(ViewCommand, ServesThePageOnTheLoopbackAddressUntilItIsInterrupted) {
   EXPECT_THAT(r.out, HasSubstr("http://127.0.0.1:" + std::to_string(port)));
 }
 
-TEST_F(ViewCommand, ConvertsByTheEndingOfTheFile) {
+TEST_F(ViewCommand, ConvertsByFileExtension) {
   ASSERT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
   for (const char* file : {"table.csv", "scene.glb", "grids.vtkhdf"}) {
     const test::ProgramResult r = run({"convert", "model.results", file});
@@ -132,7 +132,7 @@ TEST_F(ViewCommand, PlotsChannelsForPapersAndListsThem) {
   EXPECT_FALSE(exists("other.svg"));
 }
 
-TEST_F(ViewCommand, ShowsWhatOverlapsAtTheStart) {
+TEST_F(ViewCommand, ShowsOverlapsAtTheStart) {
   write("overlap.yaml",
         "format: 1\nbodies:\n  one: {shape: {sphere: 1}, density: 1}\n"
         "  two: {shape: {sphere: 1}, density: 1, position: [0.5, 0, 0]}\n"

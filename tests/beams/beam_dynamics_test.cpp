@@ -102,7 +102,7 @@ TEST(BeamFrequencies, OfAFreeBarAreTimoshenkos) {
   }
 }
 
-TEST(BeamFrequencies, ConvergeWithTheSquareOfTheElements) {
+TEST(BeamFrequencies, ConvergeWithTheSquareOfTheElementLength) {
   const double coarse = free_bar_frequencies(16, 0.5)[0] / 128.957 - 1.0;
   const double fine = free_bar_frequencies(32, 0.5)[0] / 128.957 - 1.0;
   EXPECT_NEAR(coarse / fine, 4.0, 0.2);
@@ -158,7 +158,7 @@ TEST(BeamInModel, FollowsAnArc) {
   EXPECT_LT(r.linear_momentum_drift, 1e-9);
 }
 
-TEST(BeamInModel, RefusesWhatCannotBeMeshed) {
+TEST(BeamInModel, RefusesBeamsThatCannotBeMeshed) {
   const SectionNumbers n{1e4, 1e4, 500, 500, 1, {20, 10, 10}};
   const auto refused = [&](auto&& change) {
     BeamSpec beam = beam_through({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 4, n);
@@ -230,7 +230,7 @@ TEST(BeamSystem, ConservesEnergyAndMomentaInFlight) {
   EXPECT_LT(r.angular_momentum_drift, 1e-12);
 }
 
-TEST(BeamSystem, LosesExactlyWhatItsViscosityTakes) {
+TEST(BeamSystem, LosesExactlyTheEnergyDissipatedByViscosity) {
   Model m = flying_beam(8);
   m.beams[0].section.relaxation_time = 0.02;
   const RunSummary r = run(m, 0.05, 10.0);
@@ -240,7 +240,7 @@ TEST(BeamSystem, LosesExactlyWhatItsViscosityTakes) {
 }
 
 // Free flight: a sudden load would enter the momenta with the lag of a generalised-α step.
-TEST(BeamSystem, LosesEnergyButNoMomentumBelowOne) {
+TEST(BeamSystem, LosesEnergyButNoMomentumBelowRhoOne) {
   Model m = flying_beam(8);
   m.loads.clear();
   for (BodySpec& b : m.bodies) b.velocity = Vec3(3.0, 0.5 * b.position.x(), 0.3 * b.position.y());
@@ -258,7 +258,7 @@ TEST(BeamSystem, LosesEnergyButNoMomentumBelowOne) {
 }
 
 // A plate with a mast, a cable to the mast's end, and a hinge and a spring at its middle.
-TEST(BeamSystem, GoesWithJointsSpringsAndCables) {
+TEST(BeamSystem, CanBeCombinedWithJointsSpringsAndCables) {
   ModelBuilder m;
   const int plate = m.body("plate", {0, 0, 0}, 3.0, {0.2, 0.3, 0.4});
   m.at(plate).angular_velocity = {0.2, 0.5, -0.3};

@@ -31,7 +31,7 @@ TEST(BeamElement, HasTheTangentOfItsWrench) {
 }
 
 // @tests{beam-gradient}
-TEST(BeamElement, GivesBackExactlyWhatItStored) {
+TEST(BeamElement, ReturnsExactlyTheEnergyItStored) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     Random random(seed);
     BeamSample sample(random, context_of(1.0));
@@ -45,7 +45,7 @@ TEST(BeamElement, GivesBackExactlyWhatItStored) {
 }
 
 // Steps on both sides of the size at which Gauss's rule replaces the correction along the step.
-TEST(BeamElement, GivesBackExactlyInTheSmallestSteps) {
+TEST(BeamElement, ReturnsItsEnergyExactlyInVerySmallSteps) {
   for (const double size : {1e-2, 1e-3, 3e-4, 1e-4, 3e-5, 1e-6, 1e-8, 1e-10, 0.0}) {
     Random random(3);
     BeamSample sample(random, context_of(1.0));
@@ -68,7 +68,7 @@ TEST(BeamElement, GivesBackExactlyInTheSmallestSteps) {
   }
 }
 
-TEST(BeamElement, DoesNotGiveBackExactlyInPlainForm) {
+TEST(BeamElement, DoesNotReturnItsEnergyExactlyWithMidpointForces) {
   Random random(2);
   BeamSample sample(random, context_of(1.0));
   sample.motion.context.conserving = false;
@@ -80,7 +80,7 @@ TEST(BeamElement, DoesNotGiveBackExactlyInPlainForm) {
 }
 
 // @tests{beam-strain-rate}
-TEST(BeamElement, DissipatesWhatItsViscosityTakes) {
+TEST(BeamElement, DissipatesTheWorkOfItsViscosity) {
   for (unsigned seed = 1; seed <= 8; ++seed)
     for (const double rho_inf : {1.0, 0.5}) {
       Random random(seed);
@@ -118,7 +118,7 @@ TEST(BeamElement, KeepsLinearAndAngularMomentumOfItsPair) {
 }
 
 // A rigid motion superposed on everything: the forces turn with it.
-TEST(BeamElement, IsIndifferentToTheFrameOfReference) {
+TEST(BeamElement, IsIndependentOfTheFrameOfReference) {
   Random random(5);
   BeamSample sample(random, context_of(1.0));
   const BeamElement beam = sample.element();
@@ -158,7 +158,7 @@ TEST(BeamElement, IsTheSameFromItsOtherEnd) {
   EXPECT_LT((r.wrench_b - t.wrench_a).norm(), 1e-14 * kEnergy);
 }
 
-TEST(BeamElement, IsFreeOfForceWhereItsReferenceIs) {
+TEST(BeamElement, HasNoForceInItsReferenceConfiguration) {
   Random random(7);
   BeamSample sample(random, context_of(0.0));
   sample.motion.context.conserving = false;
@@ -227,7 +227,7 @@ TEST(BeamElement, ExtrapolatesItsSectionForcesLinearly) {
   EXPECT_LT((Eigen::Map<Vec6>(sample.motion.history.data()) - expected).norm(), 1e-9);
 }
 
-TEST(BeamElement, RefusesWhatIsNoBeam) {
+TEST(BeamElement, RefusesInvalidBeams) {
   Random random(9);
   const auto refused = [&](auto&& change) {
     BeamSample sample(random, context_of(1.0));
@@ -247,7 +247,7 @@ TEST(BeamElement, RefusesWhatIsNoBeam) {
   EXPECT_THROW(set_reference(spec, here, here), InputError);
 }
 
-TEST(BeamElement, AsksForAFinerMeshWhereItBendsTooMuch) {
+TEST(BeamElement, RefusesTooMuchBendingAndSuggestsMoreElements) {
   Random random(10);
   BeamSample sample(random, context_of(1.0));
   const BeamElement beam = sample.element();

@@ -60,7 +60,7 @@ TEST(BeamStrains, AreThoseOfAnElementWithConstantStrains) {
 }
 
 // @tests{beam-invariants}
-TEST(BeamStrains, SeeNoMotionOfTheWhole) {
+TEST(BeamStrains, DoNotChangeInRigidMotions) {
   Random random(4);
   for (int sample = 0; sample < 8; ++sample) {
     const Mat3 D_1 = random.frame(), D_2 = D_1 * exp_map(random.vector(1.3)), Q = random.frame();

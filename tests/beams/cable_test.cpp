@@ -56,7 +56,7 @@ TEST(Cable, HasTheTangentOfItsCoupledMass) {
 }
 
 // @tests{cable-gradient}
-TEST(Cable, GivesBackExactlyWhatItStored) {
+TEST(Cable, ReturnsExactlyTheEnergyItStored) {
   for (unsigned seed = 1; seed <= 8; ++seed)
     for (const BarStrain strain : {BarStrain::engineering, BarStrain::green})
       for (const double slackness : kSlacknesses)
@@ -90,7 +90,7 @@ TEST(Cable, DissipatesTheWorkOfItsDamper) {
       }
 }
 
-TEST(Cable, DoesNothingWhileSlack) {
+TEST(Cable, HasNoForceWhileSlack) {
   Random random(3);
   CableSample sample(random, 1.0, 0.1);
   sample.spec.damping = 3.0;
@@ -138,7 +138,7 @@ TEST(Cable, PullsWithItsStiffnessTimesItsStrain) {
   EXPECT_TRUE(t.wrench_a.isZero(0.0));
 }
 
-TEST(Cable, RefusesWhatIsNoCable) {
+TEST(Cable, RefusesInvalidCables) {
   const auto refused = [](auto&& change) {
     CableSpec spec;
     spec.name = "stay";

@@ -159,7 +159,7 @@ TEST(RunningCable, HasTheTangentOfItsForces) {
 
 // Work of the forces: the stored energy, the dissipated and the supplied one; resultant force and
 // moment vanish. @tests{running-cable} @tests{cable-capstan-step}
-TEST(RunningCable, GivesBackExactlyWhatItStored) {
+TEST(RunningCable, ReturnsExactlyTheEnergyItStored) {
   for (const double move : {0.3, 0.02, 1e-4, 1e-7})
     for (unsigned seed = 1; seed <= 5; ++seed) {
       const double length = middle_length(Sample(kinds(1.0)[0], 1.0, move, seed));
@@ -191,7 +191,7 @@ TEST(RunningCable, GivesBackExactlyWhatItStored) {
 // Ratio of tensions at each point: at most e^{μβ}, less at points that stick; the mean weighted by
 // compliance is unchanged.
 // @tests{cable-capstan}
-TEST(CableFriction, HoldsUpToItsRatio) {
+TEST(CableFriction, SticksUpToTheCapstanRatio) {
   Random random(7);
   int slipped = 0;
   for (int trial = 0; trial < 200; ++trial) {
@@ -222,7 +222,7 @@ TEST(CableFriction, HoldsUpToItsRatio) {
 }
 
 // Tension of a muscle held still: a f_L + f_P along the tendon. @tests{muscle-force}
-TEST(RunningCable, PullsAsItsMuscle) {
+TEST(RunningCable, HasTheTensionOfItsMuscle) {
   RunningCableSpec spec = kinds(2.0)[4];
   spec.nodes = {0, 1};
   const HillMuscle& m = *spec.muscle;

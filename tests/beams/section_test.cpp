@@ -68,7 +68,7 @@ TEST(Section, OfAnElasticMaterial) {
   EXPECT_TRUE(s.stiffness.isDiagonal());
 }
 
-TEST(Section, RefusesWhatHasNoArea) {
+TEST(Section, RefusesSectionsWithoutArea) {
   EXPECT_THROW((void)rectangle_section(0.0, 1.0, 0.3), InputError);
   EXPECT_THROW((void)circle_section(-1.0, 0.3), InputError);
   EXPECT_THROW((void)tube_section(0.1, 0.1, 0.3), InputError);

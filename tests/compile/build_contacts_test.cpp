@@ -46,7 +46,7 @@ struct Built {
       if (all[static_cast<std::size_t>(i)].name == name) return i;
     throw std::logic_error("no shape " + name);
   }
-  [[nodiscard]] bool meet(const std::string& a, const std::string& b) const {
+  [[nodiscard]] bool may_touch(const std::string& a, const std::string& b) const {
     const auto& all = set->shapes();
     return set->may_meet(all[static_cast<std::size_t>(shape(a))],
                          all[static_cast<std::size_t>(shape(b))]);
@@ -59,7 +59,7 @@ TEST(BuildContacts, GivesNothingWithoutTheSection) {
             nullptr);
 }
 
-TEST(BuildContacts, PairsOfBodiesGoBeforePairsOfMaterialsAndThoseBeforeCombination) {
+TEST(BuildContacts, PrefersLawsOfBodyPairsThenOfMaterialPairs) {
   const Built built(model_of(R"(
 contacts:
   default: {friction: 0.25, restitution: 0.4}
@@ -78,7 +78,7 @@ contacts:
   EXPECT_EQ(built.law("b", "c.1").restitution, 0.4);
 }
 
-TEST(BuildContacts, CombinesAsAsked) {
+TEST(BuildContacts, CombinesMaterialsByTheGivenRule) {
   for (const auto& [way, value] :
        {std::pair("mean", 0.5), std::pair("minimum", 0.2), std::pair("maximum", 0.8),
         std::pair("product", 0.16), std::pair("geometric_mean", 0.4)}) {
@@ -92,7 +92,7 @@ contacts:
   }
 }
 
-TEST(BuildContacts, LeavesOutWhatIsExcludedAndNeighboursAtAJoint) {
+TEST(BuildContacts, LeavesOutExcludedPairsAndBodiesThatShareAJoint) {
   const std::string contacts = R"(
 joints: {link: {type: spherical, bodies: [a, b], at: [0.5, 0, 1]}}
 contacts:
@@ -100,27 +100,27 @@ contacts:
   exclude: [[c, wall]]
 )";
   const Built built(model_of(contacts));
-  EXPECT_FALSE(built.meet("a", "b"));
-  EXPECT_FALSE(built.meet("c.0", "wall"));
-  EXPECT_TRUE(built.meet("c.0", "floor")) << "a fixed body that is not excluded";
-  EXPECT_FALSE(built.meet("c.0", "c.1")) << "shapes of the same body";
-  EXPECT_TRUE(Built(model_of(contacts + "  joint_neighbours: true\n")).meet("a", "b"));
-  EXPECT_TRUE(Built(model_of(contacts + "  pairs: {ab: {between: [a, b]}}\n")).meet("a", "b"))
+  EXPECT_FALSE(built.may_touch("a", "b"));
+  EXPECT_FALSE(built.may_touch("c.0", "wall"));
+  EXPECT_TRUE(built.may_touch("c.0", "floor")) << "a fixed body that is not excluded";
+  EXPECT_FALSE(built.may_touch("c.0", "c.1")) << "shapes of the same body";
+  EXPECT_TRUE(Built(model_of(contacts + "  joint_neighbours: true\n")).may_touch("a", "b"));
+  EXPECT_TRUE(Built(model_of(contacts + "  pairs: {ab: {between: [a, b]}}\n")).may_touch("a", "b"))
       << "a pair that is named is included";
 }
 
-TEST(BuildContacts, GroupsMeetIfBothSaySo) {
+TEST(BuildContacts, LetsGroupsTouchIfBothAllowIt) {
   const Built built(model_of("contacts: {}\n", R"(
   floor: {fixed: true, shape: {plane: z}}
   a: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 1], contact: {groups: [left], meets: [default]}}
   b: {shape: {sphere: 0.2}, mass: 1, position: [1, 0, 1], contact: {groups: [right]}}
 )"));
-  EXPECT_TRUE(built.meet("a", "floor"));
-  EXPECT_TRUE(built.meet("b", "floor"));
-  EXPECT_FALSE(built.meet("a", "b"));
+  EXPECT_TRUE(built.may_touch("a", "floor"));
+  EXPECT_TRUE(built.may_touch("b", "floor"));
+  EXPECT_FALSE(built.may_touch("a", "b"));
 }
 
-TEST(BuildContacts, KeepsNamedPairsFirstAndAllIfTheyAreFew) {
+TEST(BuildContacts, ReportsNamedPairsFirstAndAllPairsIfTheyAreFew) {
   const Built built(model_of(
       "contacts: {materials: {rubber: {}, ice: {}}, sensors: {near: {between: [c, wall]}}}\n"));
   ASSERT_FALSE(built.map.pairs.empty());
@@ -144,22 +144,22 @@ beams:
 contacts: {}
 )";
 
-TEST(BuildContacts, BeamsMeetBodiesAndFarPartsOfThemselves) {
+TEST(BuildContacts, LetsBeamsTouchBodiesAndDistantPartsOfThemselves) {
   const Built built(model_of(kRope,
                              "\n  floor: {fixed: true, shape: {plane: z}}\n"
                              "  a: {shape: {sphere: 0.2}, mass: 1, position: [-0.5, 0, 2]}\n"
                              "  b: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 3]}\n"));
-  EXPECT_TRUE(built.meet("rope.5", "floor"));
-  EXPECT_TRUE(built.meet("rope.5", "b"));
+  EXPECT_TRUE(built.may_touch("rope.5", "floor"));
+  EXPECT_TRUE(built.may_touch("rope.5", "b"));
   // Elements of 0.1 m, a radius of 0.05 m: elements nearer than half a turn around the bar are
   // excluded.
-  EXPECT_FALSE(built.meet("rope.5", "rope.6"));
-  EXPECT_FALSE(built.meet("rope.5", "rope.7"));
-  EXPECT_TRUE(built.meet("rope.5", "rope.8"));
+  EXPECT_FALSE(built.may_touch("rope.5", "rope.6"));
+  EXPECT_FALSE(built.may_touch("rope.5", "rope.7"));
+  EXPECT_TRUE(built.may_touch("rope.5", "rope.8"));
   // So is the body that holds its end.
-  EXPECT_FALSE(built.meet("rope.0", "a"));
-  EXPECT_FALSE(built.meet("rope.1", "a"));
-  EXPECT_TRUE(built.meet("rope.4", "a"));
+  EXPECT_FALSE(built.may_touch("rope.0", "a"));
+  EXPECT_FALSE(built.may_touch("rope.1", "a"));
+  EXPECT_TRUE(built.may_touch("rope.4", "a"));
   // The node in the corner carries two bars, the others one.
   EXPECT_EQ(built.model.bodies[3 + 10].shapes.size(), 2U);
   EXPECT_EQ(built.model.bodies[3 + 9].shapes.size(), 1U);
@@ -171,7 +171,7 @@ const char* kOverlapping = R"(
   b: {shape: {sphere: 0.2}, mass: 3, position: [0.1, 0, 0.3]}
 )";
 
-TEST(BuildContacts, NamesWhatOverlapsAtTheStart) {
+TEST(BuildContacts, NamesBodiesThatOverlapAtTheStart) {
   try {
     Simulation simulation(model_of("contacts: {}\n", kOverlapping));
     ADD_FAILURE() << "was accepted";

@@ -72,7 +72,7 @@ std::string message(const Model& model) {
 
 }  // namespace
 
-TEST(BuildSolids, HandTheInstructionSetToTheKernelsOfElements) {
+TEST(BuildSolids, PassesTheInstructionSetToTheElementKernels) {
   Model model = two_bodies_and_a_pad();
   model.analysis.isa = "sse9";
   EXPECT_NE(message(model).find("'sse9' is not available"), std::string::npos) << message(model);
@@ -80,7 +80,7 @@ TEST(BuildSolids, HandTheInstructionSetToTheKernelsOfElements) {
   EXPECT_EQ(message(model), "");
 }
 
-TEST(BuildSolids, RefuseALoadWithoutItsValue) {
+TEST(BuildSolids, RefusesALoadWithoutItsValue) {
   Model model = two_bodies_and_a_pad();
   LoadSpec load;
   load.name = "press";
@@ -92,7 +92,7 @@ TEST(BuildSolids, RefuseALoadWithoutItsValue) {
   EXPECT_EQ(message(model), "loads.press: 'traction' is missing. Give its value.");
 }
 
-TEST(BuildSolids, WeighsASolidAndFindsItsCentre) {
+TEST(BuildSolids, ComputesTheMassAndCentreOfASolid) {
   SystemMap map;
   const Model model = two_bodies_and_a_pad();
   const System system = build_system(model, &map);

@@ -49,7 +49,7 @@ std::vector<std::string> met(const Model& model) {
   return names;
 }
 
-TEST(BuildSurfaceContacts, ASolidMeetsEveryBodyButThoseItIsBondedTo) {
+TEST(BuildSurfaceContacts, LetsASolidTouchAllBodiesExceptThoseItIsBondedTo) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(met(model_of("")), Names{}) << "without contacts";
   EXPECT_EQ(met(model_of("contacts: {}")), (Names{"floor", "roller"}));
@@ -66,7 +66,7 @@ TEST(BuildSurfaceContacts, ASolidMeetsEveryBodyButThoseItIsBondedTo) {
   EXPECT_EQ(met(model_of("contacts: {}", "contact: {groups: [soft]}")), (Names{"floor", "roller"}));
 }
 
-TEST(BuildSurfaceContacts, TakesTheLawOfThePairThenOfMaterialsThenCombined) {
+TEST(BuildSurfaceContacts, PrefersLawsOfBodyPairsThenOfMaterialPairs) {
   const auto friction = [](const std::string& contacts, const std::string& body) {
     const Model model = model_of(contacts, "contact: {material: soft}",
                                  "{duration: 1 s, step: 10 ms}", ", contact: {material: ice}");
@@ -153,7 +153,7 @@ TEST(BuildSurfaceContacts, RefusesSolidsThatOverlapAtTheStart) {
   }
 }
 
-TEST(BuildSurfaceContacts, InStaticsKnowsNoFrictionAndNoBodies) {
+TEST(BuildSurfaceContacts, RefusesFrictionAndContactsOfBodiesInStatics) {
   const std::string statics = "{type: statics}";
   const std::string hold = "prescribed: {hold: {nodes: zmin, x: 0, y: 0, z: 0}}";
   EXPECT_EQ(complaint("contacts: {" + kAlone + "}", hold, statics), "");
@@ -187,7 +187,7 @@ const SurfaceContact& contact_with(const Simulation& s, const std::string& body)
   throw std::logic_error("the cable does not meet " + body);
 }
 
-TEST(BuildSurfaceContacts, ACableMeetsBodiesThoseItHangsOnToo) {
+TEST(BuildSurfaceContacts, LetsACableTouchBodiesIncludingThoseItIsAttachedTo) {
   using Names = std::vector<std::string>;
   const std::string round = "contact: {radius: 20 mm}";
   EXPECT_EQ(met(rope_of("damping: 0")), Names{}) << "without contact";
@@ -201,7 +201,7 @@ TEST(BuildSurfaceContacts, ACableMeetsBodiesThoseItHangsOnToo) {
 }
 
 // @tests{cable-gap}
-TEST(BuildSurfaceContacts, ACableIsLookedAtAsCloselyAsTheShapeIsRound) {
+TEST(BuildSurfaceContacts, ChoosesContactPointsOfACableByTheCurvatureOfTheBody) {
   const Simulation s(rope_of("contact: {radius: 20 mm}"));
   EXPECT_EQ(contact_with(s, "floor").size(), 11) << "at the nodes only";
   // Pieces of 0.2 m, points no farther apart than (0.02 + 0.1)/2 m.
@@ -215,7 +215,7 @@ TEST(BuildSurfaceContacts, ACableIsLookedAtAsCloselyAsTheShapeIsRound) {
 }
 
 // @tests{cable-stiffness}
-TEST(BuildSurfaceContacts, ACableIsAsStiffAsAFullRoundBar) {
+TEST(BuildSurfaceContacts, GivesACableTheStiffnessOfASolidRoundBar) {
   const double area = std::numbers::pi * 0.02 * 0.02, pressure = 1e-3 * 10e3 / area;
   const Simulation s(rope_of("contact: {radius: 20 mm}"));
   const contact::NormalLaw& law = contact_with(s, "post").law().normal;

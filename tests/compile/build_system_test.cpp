@@ -55,7 +55,7 @@ Vec6 start_residual(const System& system, int interaction) {
 
 }  // namespace
 
-TEST(BuildSystem, NumbersWhatMovesAndMapsTheRest) {
+TEST(BuildSystem, NumbersMovingBodiesAndMapsFixedOnesToTheGround) {
   Model model;
   model.gravity = Vec3(0.0, 0.0, -9.81);
   model.bodies = {body("wall"), body("crank"), body("rod")};
@@ -101,7 +101,7 @@ TEST(BuildSystem, StartsBodiesAsDescribed) {
 }
 
 // The same joint, once to a body that is fixed, once to the ground.
-TEST(BuildSystem, TakesAFixedBodyForTheGround) {
+TEST(BuildSystem, TreatsAFixedBodyAsGround) {
   Random random(2);
   Model model;
   model.bodies = {body("wall", random.vector()), body("door", random.vector())};
@@ -121,7 +121,7 @@ TEST(BuildSystem, TakesAFixedBodyForTheGround) {
             1e-14);
 }
 
-TEST(BuildSystem, GivesAPointMassAnInertiaThatNothingTurns) {
+TEST(BuildSystem, GivesAPointMassAPlaceholderInertiaWithoutRotation) {
   Model model;
   BodySpec bob = body("bob", Vec3(0.0, -2.0, 0.0));
   bob.point_mass = true;
@@ -161,7 +161,7 @@ TEST(BuildSystem, RefusesToTurnAPointMass) {
   EXPECT_EQ(refused(fine, {off}), "loads.push:" + why);
 }
 
-TEST(BuildSystem, RefusesWhatConnectsNothingThatMoves) {
+TEST(BuildSystem, RefusesJointsAndLoadsThatConnectNoMovingBody) {
   Model model;
   model.bodies = {body("wall"), body("floor")};
   model.bodies[0].fixed = model.bodies[1].fixed = true;
@@ -195,7 +195,7 @@ TEST(BuildSystem, FindsTheAngleOfATorsionalSpringsJoint) {
             "joint with one free rotation, such as revolute or cylindrical.");
 }
 
-TEST(BuildSystem, SaysWhichJointHasWrongFreedoms) {
+TEST(BuildSystem, NamesTheJointWithInvalidFreedoms) {
   Model model;
   model.bodies = {body("door")};
   model.joints = {joint("odd", "generic", kGround, 0)};

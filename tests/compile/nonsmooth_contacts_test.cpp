@@ -69,7 +69,7 @@ analysis: {duration: 2 s, step: 5 ms}
 }
 
 /// Smallest gap of a run, reported after a restart although it occurred before.
-TEST(NonsmoothContacts, TellTheLeastGapAcrossARestart) {
+TEST(NonsmoothContacts, ReportTheSmallestGapAcrossARestart) {
   const auto model = [](const char* duration) {
     return model_of(std::string(kBodies) + R"(
 contacts: {default: {restitution: 1}}

@@ -17,7 +17,7 @@ ShapeSpec shape_of(const std::string& type, std::vector<double> sizes) {
   return shape;
 }
 
-TEST(RigidSurfaces, HaveAFormForEveryKindOfShapeOfSizes) {
+TEST(RigidSurfaces, ExistForEveryKindOfShape) {
   for (const ShapeKind& kind : shape_kinds()) {
     const std::vector<double> sizes = test::fitting_sizes(kind, {0.2, 0.5, 0.4});
     const RigidSurface surface = rigid_surface("a", shape_of(kind.name, sizes), 1e-4);
@@ -28,7 +28,7 @@ TEST(RigidSurfaces, HaveAFormForEveryKindOfShapeOfSizes) {
   EXPECT_EQ(rigid_surface("a", shape_of("plane", {}), 1e-4).kind, RigidSurface::Kind::plane);
 }
 
-TEST(RigidSurfaces, RefuseAKindWithoutAForm) {
+TEST(RigidSurfaces, RefuseAnUnknownKindOfShape) {
   try {
     static_cast<void>(rigid_surface("rock and pad", shape_of("star", {0.3, 0.2, 0.4}), 1e-4));
     FAIL() << "an unknown shape was accepted";

@@ -14,7 +14,7 @@ constexpr double kMapped = 1e-11;
 /// Position of a point of the mesh, interpolated from its nodes.
 Vec3 position(const Mesh& mesh, const SolidPoint& point) { return point.value(mesh.nodes); }
 
-TEST(SolidPoint, LiesWhereItWasAskedForInEveryKindOfCell) {
+TEST(SolidPoint, HasTheGivenPositionInEveryKindOfCell) {
   for (const char* cell : {"hex8", "hex20", "hex27", "tet4", "tet10", "wedge6"}) {
     SCOPED_TRACE(cell);
     const Mesh mesh = make_mesh(

@@ -70,7 +70,7 @@ TEST(SurfaceOverlaps, FindBodiesOfAnyShapeWithinASolid) {
   EXPECT_THAT(complaint(model_of(body("{sphere: 0.1}"))), HasSubstr("thing in block by 0.4 m"));
 }
 
-TEST(SurfaceOverlaps, FindWhatIsWithinABodyOfAnyShape) {
+TEST(SurfaceOverlaps, FindBodiesAndCablesWithinABodyOfAnyShape) {
   const std::string within[] = {
       "  small: {mass: 1, inertia: [1, 1, 1], position: [0.05, 0.1, 0.1], shape: {sphere: 0.1}}\n",
       "  small: {mass: 1, inertia: [1, 1, 1], position: [0.05, 0.1, 0.1], shape: {box: [0.1, 0.1, "
@@ -91,7 +91,7 @@ TEST(SurfaceOverlaps, FindWhatIsWithinABodyOfAnyShape) {
 }
 
 /// Bodies outside the solid although within its bounding box or its mirror image.
-TEST(SurfaceOverlaps, LeaveWhatIsBesideASolid) {
+TEST(SurfaceOverlaps, IgnoreBodiesOutsideASolid) {
   EXPECT_EQ(
       complaint(model_of(body("{hull: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}}",
                               "[-0.9, -0.9, -0.9]"))),
@@ -102,7 +102,7 @@ TEST(SurfaceOverlaps, LeaveWhatIsBesideASolid) {
       << "upside down: wide above the block only";
 }
 
-TEST(SurfaceOverlaps, FindWhatPiercesASolidBetweenItsNodes) {
+TEST(SurfaceOverlaps, FindBodiesThatPierceASolidBetweenItsNodes) {
   // A rod whose ends are outside and which no node of the block is in.
   EXPECT_THAT(complaint(model_of(body("{box: [3, 0.02, 0.02]}", "[0, 0.1, 0.13]"))),
               HasSubstr("thing in block by 0."));
@@ -124,7 +124,7 @@ TEST(SurfaceOverlaps, FindSolidsAndCablesWithinSolids) {
 }
 
 /// Two cells of 1 m that overlap by 0.4 m.
-TEST(SurfaceOverlaps, FindPartsOfASolidInEachOther) {
+TEST(SurfaceOverlaps, FindSelfOverlapsOfASolid) {
   const auto folded = [](const char* touches) {
     return "  folded: {mesh: {nodes: [[4, 0, 0], [5, 0, 0], [5, 1, 0], [4, 1, 0], "
            "[4, 0, 1], [5, 0, 1], [5, 1, 1], [4, 1, 1], [4.6, 0, 0], [5.6, 0, 0], [5.6, 1, 0], "
@@ -146,20 +146,20 @@ beams:
   EXPECT_THAT(complaint(model_of(beam)), HasSubstr("mast.0 in block by 0.36 m, mast.1 in block"));
 }
 
-TEST(SurfaceOverlaps, LookAtAllOfASolidWhateverOfItTouches) {
+TEST(SurfaceOverlaps, AreFoundOnTheWholeSolidIfOnlyAPartMayTouch) {
   EXPECT_THAT(complaint(model_of(body("{sphere: 0.1}", "[0, 0, -0.2]"), "contacts: {}",
                                  "contact: {surface: zmax}")),
               HasSubstr("thing in block by 0."));
 }
 
-TEST(SurfaceOverlaps, LeaveBodiesThatASolidIsBondedTo) {
+TEST(SurfaceOverlaps, IgnoreBodiesThatASolidIsBondedTo) {
   const std::string insert = body("{sphere: 0.1}", "[0, 0, 0.4]");
   EXPECT_EQ(
       complaint(model_of(insert, "contacts: {joint_neighbours: true}", "bonded: {thing: zmax}")),
       "");
 }
 
-TEST(SurfaceOverlaps, LeaveWhatACableIsFastenedToWithin) {
+TEST(SurfaceOverlaps, IgnoreBondedBodiesThatACableIsAttachedTo) {
   const std::string held = R"(bodies:
   core: {mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]}
   post: {fixed: true}
@@ -202,7 +202,7 @@ TEST(SurfaceOverlaps, MoveABodyAndASolidApartByTheirMasses) {
   EXPECT_LT((middle(simulation, 0) - Vec3(0, 0, back)).norm(), 1e-9);
 }
 
-TEST(SurfaceOverlaps, MoveSolidsApartWithWhatTheyAreBondedTo) {
+TEST(SurfaceOverlaps, MoveSolidsApartWithTheBodiesTheyAreBondedTo) {
   Simulation simulation(
       model_of(bar("[0.1, 0.12, 0.42]", "[0.2, 0.2, 0.2]", "[2, 2, 2]") +
                    "bodies:\n  head: {mass: 3, inertia: [1, 1, 1], position: [0.1, 0.12, 0.42]}\n",
@@ -217,7 +217,7 @@ TEST(SurfaceOverlaps, MoveSolidsApartWithWhatTheyAreBondedTo) {
   EXPECT_LT(simulation.body(0).v.norm(), 1e-9);
 }
 
-TEST(SurfaceOverlaps, AreRefusedWhereNothingMayMove) {
+TEST(SurfaceOverlaps, AreRefusedIfBothSidesAreFixed) {
   EXPECT_THAT(complaint(model_of("bodies:\n  thing: {fixed: true, shape: {sphere: 0.1}}\n",
                                  kResolve, "prescribed: {hold: {nodes: zmin, x: 0, y: 0, z: 0}}")),
               HasSubstr("could not be moved apart"));

@@ -48,7 +48,7 @@ struct Case {
   }
 };
 
-TEST(ClosedFormPoint, GivesWhatTheGeneralFormulasGive) {
+TEST(ClosedFormPoint, AgreesWithTheGeneralFormulas) {
   for (unsigned seed = 1; seed <= 40; ++seed)
     for (const bool plane_below : {false, true}) {
       Case c(seed, plane_below);
@@ -87,7 +87,7 @@ TEST(ClosedFormPoint, GivesWhatTheGeneralFormulasGive) {
 
 /// Gap after motions far below the rounding of positions: it changes by their component along the
 /// normal. @tests{contact-gap-change}
-TEST(ClosedFormPoint, GapsFollowMotionsThatPositionsCannotHold) {
+TEST(ClosedFormPoint, ResolvesGapChangesBelowTheRoundingOfPositions) {
   const Shape ball = sphere("ball", 0.4), other = sphere("other", 0.6), floor = plane();
   const Shape block = box("block", {0.2, 0.3, 0.4}), table = box("table", {2.0, 2.0, 0.4});
   struct Scene {
@@ -123,7 +123,7 @@ TEST(ClosedFormPoint, GapsFollowMotionsThatPositionsCannotHold) {
 
 /// The spring is the tangent without μ t dλ and without terms of rotation: both are small where
 /// nothing slides and rotations are small. @tests{contact-spring}
-TEST(ClosedFormPoint, SpringIsLikeTheTangentOfAStickingContact) {
+TEST(ClosedFormPoint, HasASpringCloseToTheTangentOfAStickingContact) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Case c(seed, seed % 2 == 0);
     c.data.friction.mu = 1e3;

@@ -76,7 +76,7 @@ TEST(BouncingBall, LosesSpeedByItsRestitution) {
 /// of the load on each lies at s = 0.69 of the band, (2 s − 1) of the tolerance.
 constexpr double kRestingHeight = 0.05 + 0.38 * 1.5e-4;
 
-TEST(Incline, HoldsABlockForGood) {
+TEST(Incline, HoldsABlockWithoutCreep) {
   const double mu = 0.5, slope = std::atan(0.9 * mu);
   Scene s(9.81 * Vec3(std::sin(slope), 0.0, -std::cos(slope)));
   const int block = s.add_box("block", {0.2, 0.2, 0.1}, 1.0, at({0.0, 0.0, kRestingHeight}));
@@ -105,7 +105,7 @@ TEST(Incline, LetsABlockSlide) {
 }
 
 // @tests{contact-bristle}
-TEST(RollingBall, RollsDownAsTheInclineTellsIt) {
+TEST(RollingBall, AcceleratesDownAnInclineByTheClosedForm) {
   const double slope = 0.3490658503988659, g = 9.81;
   Scene s(g * Vec3(std::sin(slope), 0.0, -std::cos(slope)));
   const int ball = s.add_ball("ball", 0.1, 1.0, at({0.0, 0.0, 0.1}));
@@ -165,7 +165,7 @@ TEST(FreeCollision, OfEveryPairOfShapesKeepsEnergyAndMomenta) {
     }
 }
 
-TEST(Contacts, GoOnBitForBitFromAnArchive) {
+TEST(Contacts, ContinueBitForBitFromASavedState) {
   Scene s;
   Random random(4);
   for (int k = 0; k < 3; ++k) {

@@ -21,8 +21,8 @@ struct Encounter {
 
 /// Moves b towards a from a random side until a feature pair is within the search radius; then a
 /// random step.
-Encounter meet(const Shape& a, const Shape& b, const StepContext& context, Random& random,
-               double reach) {
+Encounter encounter(const Shape& a, const Shape& b, const StepContext& context, Random& random,
+                    double reach) {
   Encounter e{PairMotion(random, context), {}};
   PairMotion& m = e.motion;
   m.a_n.r.setZero();
@@ -106,7 +106,7 @@ TEST_P(EveryPairOfShapes, DoesExactlyTheWorkItStoresAndNothingElse) {
   int met = 0;
   for (int trial = 0; trial < 3; ++trial)
     for (const NormalLaw& law : laws()) {
-      const Encounter e = meet(a_, b_, context_of(1.0, 0.01), random, kReach);
+      const Encounter e = encounter(a_, b_, context_of(1.0, 0.01), random, kReach);
       for (const OrderedPair& p : e.pairs) {
         const PointData d = data_of(p, a_, b_, law);
         PointReport report;
@@ -140,11 +140,11 @@ TEST_P(EveryPairOfShapes, DoesExactlyTheWorkItStoresAndNothingElse) {
 /// A gap in double-double numbers follows a displacement of 1e-13 to 1e-5 of it; doubles resolve it
 /// to a tenth only.
 // @tests{contact-gap-change}
-TEST_P(EveryPairOfShapes, HasFineGapsThatFollowTheLastDigitsOfAStep) {
+TEST_P(EveryPairOfShapes, HasGapsInDoubleDoublePrecision) {
   Random random(14);
   int followed = 0;
   for (int trial = 0; trial < 9; ++trial) {
-    const Encounter e = meet(a_, b_, context_of(1.0, 0.01), random, kReach);
+    const Encounter e = encounter(a_, b_, context_of(1.0, 0.01), random, kReach);
     for (const OrderedPair& p : e.pairs) {
       const Shape &x = p.swapped ? b_ : a_, &y = p.swapped ? a_ : b_;
       const auto moved = [&](double more) {
@@ -185,7 +185,7 @@ TEST_P(EveryPairOfShapes, HasTheTangentOfItsWrench) {
   int checked = 0;
   for (const double rho : {1.0, 0.6})
     for (int trial = 0; trial < 3; ++trial) {
-      const Encounter e = meet(a_, b_, context_of(rho, 0.01), random, kReach);
+      const Encounter e = encounter(a_, b_, context_of(rho, 0.01), random, kReach);
       int of_this = 0;
       for (const OrderedPair& p : e.pairs) {
         for (const bool has_friction : {false, true}) {

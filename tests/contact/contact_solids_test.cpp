@@ -59,7 +59,7 @@ struct Cart {
 /// both were rigid. The change of speed that the law of restitution gives to the body alone is
 /// distributed by vibrations that the step does not resolve.
 // @tests{turn-law}
-TEST(ContactSolids, StiffCartReboundsAsItsMassesSay) {
+TEST(ContactSolids, StiffCartReboundsTogetherWithItsSolid) {
   for (const double e : {0.3, 0.5, 0.8, 1.0}) {
     Cart c(e, 1e10, 2e-2);
     ASSERT_TRUE(c.rebound()) << c.s.last.text();
@@ -108,7 +108,7 @@ struct Flight {
 };
 
 // @tests{turn-law}
-TEST(ContactSolids, ImpactsInFreeFlightKeepMomentaAndNeverGiveEnergy) {
+TEST(ContactSolids, ImpactsInFreeFlightKeepMomentaAndNeverAddEnergy) {
   for (const bool joint : {false, true})
     for (const auto& [mu, e] : {std::pair(0.0, 0.0), {0.0, 0.6}, {0.4, 0.3}}) {
       Flight f(mu, e, joint);
@@ -130,7 +130,7 @@ TEST(ContactSolids, ImpactsInFreeFlightKeepMomentaAndNeverGiveEnergy) {
 
 /// A body with a bar along its roof rests on the floor: four corners of its rigid box carry the
 /// weight of both.
-TEST(ContactSolids, StandsOnTheFloorWithTheWeightOfBoth) {
+TEST(ContactSolids, RestsOnTheFloorWithTheWeightOfBodyAndSolid) {
   Scene s;
   const double half = 0.05;
   const int box = s.add_box("box", {0.4, 0.3, 2.0 * half}, 1.0, at({0.0, 0.0, half}));
@@ -185,7 +185,7 @@ TEST(ContactSolids, ChainWithASolidFallsAndItsJointsHold) {
   }
 }
 
-TEST(ContactSolids, GoOnBitForBitFromAnArchive) {
+TEST(ContactSolids, ContinueBitForBitFromASavedState) {
   Flight f(0.4, 0.5, true);
   ASSERT_TRUE(f.s.run(0.15)) << f.s.last.text();
   const std::string middle = state_bytes(f.s.system, f.s.state);
@@ -198,7 +198,7 @@ TEST(ContactSolids, GoOnBitForBitFromAnArchive) {
 }
 
 /// Report of a step that does not converge: the contact with the largest residual.
-TEST(ContactSolids, NamesTheContactThatCannotBeSolved) {
+TEST(ContactSolids, NamesTheContactThatDoesNotConverge) {
   Cart c(0.5, 1e5, 2e-2);
   c.s.max_iterations = 1;
   std::string worst;

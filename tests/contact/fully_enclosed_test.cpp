@@ -8,7 +8,7 @@
 #include "contact/scene.hpp"
 #include "contact/shapes_for_tests.hpp"
 
-namespace polhode::contact::buried_tests {
+namespace polhode::contact::fully_enclosed_tests {
 namespace {
 
 using polhode::test::Scene;
@@ -38,7 +38,7 @@ std::optional<FullyEnclosed> ball_in(const Shape& surface, const Vec3& at, doubl
                         Placement<double>(shift, turn, 6));
 }
 
-TEST(FullyEnclosed, FindsWhatLiesWithinAClosedSurface) {
+TEST(FullyEnclosed, FindsBodiesWithinAClosedSurface) {
   const Shape solid = mesh("cube", cube(1.0)), hollow = mesh("shell", shell());
   const std::optional<FullyEnclosed> found = ball_in(solid, {0.1, 0.3, 0.0});
   ASSERT_TRUE(found);
@@ -53,7 +53,7 @@ TEST(FullyEnclosed, FindsWhatLiesWithinAClosedSurface) {
   EXPECT_FALSE(ball_in(ring, {0.0, 0.0, 0.0})) << "in its hole";
 }
 
-TEST(FullyEnclosed, FindsWhatLiesBelowAFieldOfHeights) {
+TEST(FullyEnclosed, FindsBodiesBelowAHeightField) {
   const double heights[] = {0.0, 0.2, 0.0, 0.2, 0.4, 0.2, 0.0, 0.2, 0.0};
   const Shape field = height_field("field", 3, 1.0, heights);
   EXPECT_TRUE(ball_in(field, {0.1, 0.2, 0.1}));
@@ -77,4 +77,4 @@ TEST(FullyEnclosed, IsAnOverlapAtTheStartWhereNoFeatureIsNear) {
 }
 
 }  // namespace
-}  // namespace polhode::contact::buried_tests
+}  // namespace polhode::contact::fully_enclosed_tests

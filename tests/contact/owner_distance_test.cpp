@@ -35,7 +35,7 @@ double distance(const Shape& a, const Shape& b, const Vec3& r,
   return set.distance(0, 1, instants);
 }
 
-TEST(OwnerDistance, IsThatOfClosedFormsFromFarAndNear) {
+TEST(OwnerDistance, AgreesWithClosedFormsFarAndNear) {
   const Quat eighth(Eigen::AngleAxisd(std::atan(1.0), Vec3::UnitZ()));
   for (const double far : {1e-6, 0.01, 1.0, 300.0, 1e5}) {
     const double digits = 1e-12 * (1.0 + far);
@@ -58,7 +58,7 @@ TEST(OwnerDistance, IsNegativeWhereShapesOverlap) {
   EXPECT_NEAR(distance(plane(), sphere("b", 1.0), {0.0, 0.0, 0.2}), -0.3, 1e-12);
 }
 
-TEST(OwnerDistance, OfSurfacesOfTrianglesIsThatOfTheNearest) {
+TEST(OwnerDistance, OfTriangleSurfacesIsThatOfTheNearestTriangle) {
   const Shape hills = height_field("hills", 5, 1.0, std::vector<double>(25, 0.5));
   EXPECT_NEAR(distance(hills, sphere("ball", 0.2), {0.3, -0.4, 7.6}), 7.0, 2e-3);
 }

@@ -46,7 +46,7 @@ double sampled(const Shape& part, const Shape& b, const Placement<double>& at_a,
   return least;
 }
 
-TEST(PartGap, IsTheLeastOfManyPoints) {
+TEST(PartGap, IsTheMinimumOverManyPoints) {
   Random random(31);
   for (const NamedShape& round : round_shapes())
     for (const Shape& b : {box("box", {0.8, 0.7, 0.5}), hull("hull", stone(5))}) {
@@ -73,7 +73,7 @@ TEST(PartGap, IsTheLeastOfManyPoints) {
 }
 
 /// Distance of the outer rim of a tube from solids in front of it, beside it and within its mouth.
-TEST(RingGap, IsTheLeastOfManyPoints) {
+TEST(RingGap, IsTheMinimumOverManyPoints) {
   Random random(34);
   const Shape tube = round_tube(0.8, 0.5, 0.7);
   int met = 0, within = 0;
@@ -114,7 +114,7 @@ TEST(RingGap, IsTheLeastOfManyPoints) {
 }
 
 /// Overlap of a part that penetrates a face far from the edges: its depth below the face.
-TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
+TEST(PartGap, IsNegativeWhereThePartPenetrates) {
   const Shape egg = ellipsoid("egg", {0.3, 0.2, 0.4}), crate = box("crate", {2.0, 2.0, 2.0});
   const Shape field = height_field("field", 5, 1.0, std::vector<double>(25, 0.0));
   const Mat3 upright = Mat3::Identity();
@@ -138,7 +138,7 @@ TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
 }
 
 /// Gap of an edge to the round solid, whose rims are rounded by a hundredth, as is a cone's side.
-TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
+TEST(RoundOverEdge, IsTheMinimumOverManyPoints) {
   Random random(32);
   const Shape with_edges[] = {box("box", {0.8, 0.7, 0.5}), capsule("capsule", 0.3, 0.8)};
   int compared = 0;
@@ -171,7 +171,7 @@ TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
 
 /// On a plane that is cut into triangles a part has the gap of the plane, the outer rim of a tube
 /// too. @tests{contact-one-gap}
-TEST(PartGap, HasOneGapOverTrianglesOfAPlane) {
+TEST(PartGap, IsThatOfThePlaneOverItsTriangles) {
   Random random(33);
   std::vector<NamedShape> shapes = round_shapes();
   shapes.push_back({"tube", round_tube(0.8, 0.5, 0.7)});

@@ -23,7 +23,7 @@ Shape field(double spacing, int n, const std::function<double(double, double)>& 
 }
 
 /// @tests{contact-one-gap}
-TEST(SurfaceGap, PushesWithBothSidesOfAValleyAndIsSmoothAcross) {
+TEST(SurfaceGap, UsesBothSidesOfAValleyAndIsSmoothAcrossIt) {
   const Shape valley = field(0.1, 21, [](double x, double) { return 0.5 * std::abs(x); });
   const Shape ball = sphere("ball", 0.2);
   const Mat3 upright = Mat3::Identity();
@@ -94,7 +94,7 @@ TEST(SurfaceGap, LetsBodiesSlideOverFlatTrianglesAsOverThePlane) {
     }
 }
 
-TEST(SurfaceGap, IsNotThatOfAHalfSpaceForAWholeSurface) {
+TEST(SurfaceGap, RefusesToTreatASurfaceAsASolid) {
   const Shape flat = field(0.1, 5, [](double, double) { return 0.0; });
   const Mat3 upright = Mat3::Identity();
   const Placement<double> at(Vec3::Zero(), upright, 6);

@@ -26,7 +26,7 @@ double distance_from(const Vec3& x) {
   return std::max(across, along);
 }
 
-TEST(Tube, IsRoundToBalls) {
+TEST(Tube, HasRoundSidesForBalls) {
   const ShapePlace place{{0.3, -0.2, 0.1}, Random(5).frame()};
   const Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf, place);
   const Shape ball = sphere("ball", 0.02);
@@ -49,7 +49,7 @@ TEST(Tube, IsRoundToBalls) {
 
 /// Disc at the end of a rod within the tube: it touches the inner side at its point farthest from
 /// the axis.
-TEST(Tube, IsRoundToTheEndsOfRodsWithinIt) {
+TEST(Tube, HasARoundBoreForTheEndsOfRods) {
   const Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf);
   const Shape rod = cylinder("rod", 0.2, 0.3);
   const Mat3 upright = Mat3::Identity();

@@ -11,7 +11,7 @@ namespace {
 /// Stored energy of a band with another stiffness and the range for it: the given energy, to the
 /// last digits. Without energy the band begins at the gap.
 /// @tests{contact-same-energy}
-TEST(NormalLaw, StoresWhatItIsToStoreWithAnotherStiffness) {
+TEST(NormalLaw, KeepsTheStoredEnergyWithAnotherStiffness) {
   for (const NormalPotential potential :
        {NormalPotential::barrier, NormalPotential::linear, NormalPotential::hertz})
     for (const double gap : {-0.9e-4, -0.3e-4, -1e-7})
@@ -32,7 +32,7 @@ TEST(NormalLaw, StoresWhatItIsToStoreWithAnotherStiffness) {
 /// A barrier that begins at a smaller gap: its force is that of the whole barrier less the force at
 /// its beginning, its energy the integral of the force, its difference quotient that of the energy.
 /// @tests{contact-later}
-TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
+TEST(NormalLaw, CanBeginAtASmallerGapWithinItsBand) {
   NormalLaw law;
   law.stiffness = 3e5;
   law.tolerance = 1e-4;

@@ -6,7 +6,7 @@
 namespace polhode::names_tests {
 namespace {
 
-TEST(Names, FindTheWordThatWasMeant) {
+TEST(Names, SuggestTheNearestWord) {
   const std::vector<std::string> words = {"mass", "inertia", "position", "velocity"};
   EXPECT_EQ(closest("mas", words), "mass");
   EXPECT_EQ(closest("postion", words), "position");

@@ -26,7 +26,7 @@ class BodyStepAt : public testing::TestWithParam<double> {
 INSTANTIATE_TEST_SUITE_P(SpectralRadius, BodyStepAt, testing::Values(0.0, 0.5, 0.9, 1.0));
 
 // @tests{ga-z-interpolation}
-TEST_P(BodyStepAt, AveragesWhatABodyCarries) {
+TEST_P(BodyStepAt, AveragesVectorsFixedInTheBody) {
   const Carried z = step_.vector(kZ);
   EXPECT_LT((z.at_n - step_.Lambda_n * kZ).norm(), 1e-15);
   EXPECT_LT((z.at_n1 - step_.Lambda_n1 * kZ).norm(), 1e-15);
@@ -57,7 +57,7 @@ TEST_P(BodyStepAt, HasTheTangentOfAnAveragedVectorAndPoint) {
 }
 
 // @tests{joint-carried-difference}
-TEST_P(BodyStepAt, TurnsACarriedVectorByThetaTimesItsMean) {
+TEST_P(BodyStepAt, ChangesABodyFixedVectorByThetaTimesItsMean) {
   const Carried z = step_.vector(kZ);
   EXPECT_LT((z.at_n1 - z.at_n - step_.theta.cross(0.5 * (z.at_n + z.at_n1))).norm(), 1e-15);
 }
@@ -81,7 +81,7 @@ TEST(BodyStep, HasMeanRatesThatMakeTheStepWithoutDamping) {
   EXPECT_LT((sample.context.dt * step.omega_alpha() - step.theta).norm(), 1e-15);
 }
 
-TEST(BodyStep, OfTheGroundStays) {
+TEST(BodyStep, OfTheGroundDoesNotMove) {
   const BodyStep ground = BodyStep::ground(0.6);
   EXPECT_FALSE(ground.moves);
   EXPECT_EQ(ground.point(kZ).at_n1, kZ);

@@ -51,7 +51,7 @@ TEST_P(Alpha, DampsAnInfinitelyStiffOscillatorByItsSpectralRadius) {
   EXPECT_NEAR(amplification.eigenvalues().cwiseAbs().maxCoeff(), rho_, 1e-2);
 }
 
-TEST(GeneralizedAlpha, TakesNothingFromStoredAccelerationsWithoutDamping) {
+TEST(GeneralizedAlpha, DoesNotUseStoredAccelerationsWithoutDamping) {
   // The weights are exactly zero, since accelerations are undamped noise there.
   const GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(1.0);
   EXPECT_EQ(ga.c_A, 0.0);

@@ -72,7 +72,7 @@ TEST_P(Momentum, GivesAKineticEnergyThatIsTheSameInBodyAxes) {
 }
 
 // @tests{eq:rbm-virtual-work}
-TEST_P(Momentum, RatesDoTheWorkThatTheKineticEnergyTakesUp) {
+TEST_P(Momentum, RatesDoWorkEqualToTheChangeOfKineticEnergy) {
   // With δr = ṙ dt and δθ = ω dt, δW = 0 states that the work of force and moment equal to the
   // momentum rates is the increase of kinetic energy.
   const auto [r_dot, omega] = motion_.velocities(t_);

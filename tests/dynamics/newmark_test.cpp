@@ -79,7 +79,7 @@ TEST_P(Newmark, HasTheTangentsOfItsRates) {
       tangent.D_A, [&](const Vec& d) -> Vec { return rates(d).A; }, "D_A");
 }
 
-TEST(NewmarkWithoutDamping, TakesNothingFromTheStoredAcceleration) {
+TEST(NewmarkWithoutDamping, DoesNotUseTheStoredAcceleration) {
   const GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(1.0);
   const Vec3 u(0.06, 0.03, 0.09);
   const Vec3 v_n(0.4, -0.2, 1.1);

@@ -54,7 +54,7 @@ double iterations_to(Scene& s, double end) {
   return static_cast<double>(iterations) / steps;
 }
 
-TEST(ContactCgEngine, MovesAHeapAsTheDirectEngineDoes) {
+TEST(ContactCgEngine, AgreesWithTheDirectEngineForAHeap) {
   Heap iterative(1e-9), direct(0.0);
   // A heap of impacts is chaotic: later the motions of the engines diverge.
   ASSERT_TRUE(iterative.run(0.14)) << iterative.last.text();
@@ -181,7 +181,7 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactOnAHingedBody) {
 
 /// A ball that rolls and slides along the face of a heavy turning paddle: the gap is a small part
 /// of the band while the ball moves on a curve relative to the paddle. @tests{contact-filter}
-TEST(ContactCgEngine, FollowsABallAlongATurningFace) {
+TEST(ContactCgEngine, FollowsABallOnARotatingFace) {
   for (const double dt : {10e-3, 5e-3, 1e-3, 1e-4}) {
     Scene s;
     s.cg_residual = 1e-6;
@@ -227,7 +227,7 @@ TEST(ContactCgEngine, NeedsFewIterationsForImpactsWithoutRebound) {
   EXPECT_LT(iterations, 4 * steps);
 }
 
-TEST(ContactCgEngine, GoesOnBitForBitFromAnArchive) {
+TEST(ContactCgEngine, ContinuesBitForBitFromASavedState) {
   Heap s(1e-6);
   ASSERT_TRUE(s.run(0.2));
   const std::string middle = state_bytes(s.system, s.state);
@@ -240,7 +240,7 @@ TEST(ContactCgEngine, GoesOnBitForBitFromAnArchive) {
 }
 
 /// Contact forces where few bodies moved: those between other bodies are not evaluated again.
-TEST(ContactCgEngine, AsksOnlyForForcesOfWhatMoved) {
+TEST(ContactCgEngine, EvaluatesOnlyForcesOfBodiesThatMoved) {
   Heap s(1e-6);
   ASSERT_TRUE(s.run(0.4));
   const int n = s.system.body_count();
@@ -287,7 +287,7 @@ TEST(ContactCgEngine, AsksOnlyForForcesOfWhatMoved) {
 
 /// Balls in flight converge before the heap does and take no part in its further iterations: they
 /// move on parabolas and do not affect the heap.
-TEST(ContactCgEngine, LeavesAloneWhatIsSolved) {
+TEST(ContactCgEngine, SkipsConvergedBodies) {
   Heap s(1e-6);
   Heap both(1e-6, [](Scene& scene) {
     for (int k = 0; k < 40; ++k)
@@ -317,7 +317,7 @@ void add_joints(Scene& s) {
   s.add_joint("revolute", kGround, flap, {0.5, 0.7, 0.4});
 }
 
-TEST(ContactCgEngine, MovesAHeapWithJointsAsTheDirectEngineDoes) {
+TEST(ContactCgEngine, AgreesWithTheDirectEngineForAHeapWithJoints) {
   for (const double dt : {2e-3, 2e-4}) {
     Heap iterative(1e-9, add_joints, dt), direct(0.0, add_joints, dt);
     ASSERT_TRUE(iterative.run(0.1)) << iterative.last.text();
@@ -362,7 +362,7 @@ TEST(ContactCgEngine, PendulumBesideBallsKeepsItsEnergy) {
   }
 }
 
-TEST(ContactCgEngine, RefusesWhatIsTooStiffForIt) {
+TEST(ContactCgEngine, RefusesDeformableSolids) {
   Scene s;
   s.cg_residual = 1e-6;
   const int ball = s.add_ball("ball", 0.1, 1.0, at({0.0, 0.0, 0.5}));

@@ -108,7 +108,7 @@ TEST(CoupledEngine, KeepsEnergyAndMomentaOfALatticeOnATumblingBody) {
   EXPECT_EQ(s.state.ledger.rejected, 0);
 }
 
-TEST(CoupledEngine, KeepsThemWithTwoBodiesAndElementsThatHaveNoFreeNode) {
+TEST(CoupledEngine, KeepsEnergyAndMomentaOfElementsWithoutFreeNodes) {
   for (const int length : {1, 3}) {
     Scene s({.two_bodies = true, .length = length});
     s.run(500);
@@ -125,7 +125,7 @@ TEST(CoupledEngine, KeepsEnergyOnAJointUnderGravity) {
   EXPECT_LT(s.state.ledger.l_drift / s.state.ledger.l_scale, 1e-12);
 }
 
-TEST(CoupledEngine, GroundHoldsNodesAndTheLedgerCountsItsReaction) {
+TEST(CoupledEngine, LedgerIncludesTheReactionOfGroundOnNodes) {
   Scene s({.clamp = true, .gravity = Vec3(0, 0, -9.81)});
   s.run(300, 0.01);
   EXPECT_LT(s.energy_drift(), 1e-12);
@@ -133,7 +133,7 @@ TEST(CoupledEngine, GroundHoldsNodesAndTheLedgerCountsItsReaction) {
   EXPECT_LT(s.state.ledger.l_drift / s.state.ledger.l_scale, 1e-11);
 }
 
-TEST(CoupledEngine, BooksWhatViscosityTakes) {
+TEST(CoupledEngine, RecordsTheEnergyDissipatedByViscosity) {
   Scene s({.two_bodies = true, .viscosity = 2.0});
   const double before = s.state.ledger.initial_energy;
   s.run(300);
@@ -141,7 +141,7 @@ TEST(CoupledEngine, BooksWhatViscosityTakes) {
   EXPECT_LT(s.energy_drift(), 1e-12);
 }
 
-TEST(CoupledEngine, AKeptFactorisationConvergesToTheSameStep) {
+TEST(CoupledEngine, ConvergesToTheSameStepWithAReusedFactorisation) {
   Scene newton({.two_bodies = true, .hinge = true, .gravity = Vec3(0, 0, -9.81)});
   Scene kept({.two_bodies = true,
               .hinge = true,
@@ -156,7 +156,7 @@ TEST(CoupledEngine, AKeptFactorisationConvergesToTheSameStep) {
   EXPECT_LT(kept.energy_drift(), 1e-11);
 }
 
-TEST(CoupledEngine, TangentIsTheDerivativeOfTheResidual) {
+TEST(CoupledEngine, ConvergesQuadraticallyNearTheSolution) {
   for (const double rho_inf : {1.0, 0.6}) {
     Scene s({.two_bodies = true, .hinge = true, .viscosity = 0.7, .length = 2, .rho_inf = rho_inf});
     s.run(5);

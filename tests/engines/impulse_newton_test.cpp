@@ -38,7 +38,7 @@ ProjectedGaussSeidel column(const std::vector<double>& masses, double along) {
 
 /// A ton on a gram: the error of sweeps decreases by 1e-6 only, Newton's method converges to the
 /// weights.
-TEST(ImpulseNewton, CarriesATonOnAGram) {
+TEST(ImpulseNewton, ConvergesForATonOnAGram) {
   ProjectedGaussSeidel s = column({1e-3, 1e3}, 0.0);
   for (int k = 0; k < 100; ++k) s.sweep(k % 2 == 1);
   EXPECT_LT(s.points[1].normal_impulse, 1e-3);  // of 9.81 N s
@@ -50,7 +50,7 @@ TEST(ImpulseNewton, CarriesATonOnAGram) {
 
 /// Slipping and sticking points, against the limit of very many sweeps.
 /// @tests{nonsmooth-projection}
-TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
+TEST(ImpulseNewton, FindsTheLimitOfManySweeps) {
   for (const double along : {0.0, 1e-3, 0.05}) {
     ProjectedGaussSeidel swept = column({2.0, 0.5, 1.0, 3.0}, along), found = swept;
     for (int k = 0; k < 20000; ++k) swept.sweep(k % 2 == 1);
@@ -102,7 +102,7 @@ TEST(ImpulseNewton, FindsRollingAndTorsionalFriction) {
 }
 
 /// A box of 1 kg on its four corners, whose impulses are not unique, under one of 100 kg.
-TEST(ImpulseNewton, SharesALoadBetweenPoints) {
+TEST(ImpulseNewton, DistributesALoadOverRedundantPoints) {
   ProjectedGaussSeidel s;
   const double a = 0.1;
   for (const double m : {1.0, 100.0}) {

@@ -38,7 +38,7 @@ struct Heap : Scene {
 };
 
 /// @tests{nonsmooth-exit}
-TEST(LeastExitSpeed, NeverGivesEnergyAndLandsInTwoSteps) {
+TEST(LeastExitSpeed, NeverAddsEnergyAndLandsInTwoSteps) {
   for (const double e : {0.0, 0.3, 0.9, 1.0})
     for (const double w : {-3.0, -1e-3, 0.0, 1e-3, 2.0})
       for (const double gap : {-1e-3, -1e-9, 0.0, 1e-6, 1e-3, 0.1}) {
@@ -85,7 +85,7 @@ TEST(NonsmoothEngine, KeepsTheEnergyOfElasticBounces) {
 
 /// Balls without gravity rebound with e times their speed, e of the pair of materials; with e = 0
 /// they stop at the surface. @tests{nonsmooth-exit}
-TEST(NonsmoothEngine, ReboundsByThePair) {
+TEST(NonsmoothEngine, ReboundsWithTheRestitutionOfThePair) {
   Scene s(Vec3::Zero());
   const double restitution[] = {0.0, 0.5, 0.9};
   const int plate = s.contacts->add_material({"plate", 0.0, 1.0});
@@ -118,7 +118,7 @@ TEST(NonsmoothEngine, ReboundsByThePair) {
 }
 
 /// @tests{nonsmooth-step}
-TEST(NonsmoothEngine, KeepsMomentaWhateverTheSearchLeaves) {
+TEST(NonsmoothEngine, KeepsMomentaWithoutConvergence) {
   for (const int sweeps : {1, 3, 1000}) {
     Scene s(Vec3::Zero());
     BodyMotion left = at({-0.4, 0.01, 0.02}, {1.5, 0.1, 0.0});
@@ -170,7 +170,7 @@ TEST(NonsmoothEngine, NeverGainsEnergyOnceConverged) {
   }
 }
 
-TEST(NonsmoothEngine, HoldsAHeapTogetherWithFewSweeps) {
+TEST(NonsmoothEngine, SolvesAHeapWithFewSweeps) {
   Heap s({100, 1e-3});
   double energy = s.energy(), rise = 0.0, least = 1.0;
   for (int k = 0; k < 1000; ++k) {
@@ -185,7 +185,7 @@ TEST(NonsmoothEngine, HoldsAHeapTogetherWithFewSweeps) {
   EXPECT_LT(l.p_drift, 1e-11 * l.p_scale);
 }
 
-TEST(NonsmoothEngine, GoesOnBitForBitFromAnArchive) {
+TEST(NonsmoothEngine, ContinuesBitForBitFromASavedState) {
   Heap s({50, 1e-3});
   ASSERT_TRUE(s.run(0.4));
   const std::string middle = state_bytes(s.system, s.state);
@@ -211,7 +211,7 @@ TEST(NonsmoothEngine, LetsNothingPassThroughAThinPlate) {
 }
 
 /// A ball that slides over the triangles of level ground, past the edges between them.
-TEST(NonsmoothEngine, GlidesOverTheEdgesOfLevelTriangles) {
+TEST(NonsmoothEngine, SlidesOverTheEdgesOfCoplanarTriangles) {
   Scene s;
   const int ball = s.add_ball("ball", 0.1, 1.0, at({-0.93, -0.21, 0.1}, {2.0, 0.7, 0.0}));
   const std::vector<double> heights(21 * 21, 0.0);
@@ -225,7 +225,7 @@ TEST(NonsmoothEngine, GlidesOverTheEdgesOfLevelTriangles) {
 }
 
 /// Shapes of all kinds that come to rest on a fixed plate.
-TEST(NonsmoothEngine, CarriesEveryShape) {
+TEST(NonsmoothEngine, SupportsEveryShapeOnAPlate) {
   Scene s;
   std::vector<int> bodies;
   const auto drop = [&](const std::string& name, const contact::Shape& shape, double x) {

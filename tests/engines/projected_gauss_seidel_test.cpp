@@ -4,7 +4,7 @@
 #include <polhode/engines/sphere_gauss_seidel.hpp>
 #include <polhode/math/hat.hpp>
 
-namespace polhode::impulse_sweeps_tests {
+namespace polhode::projected_gauss_seidel_tests {
 namespace {
 
 /// A pile of five balls on the ground, falling, or of bodies that turn differently about each axis.
@@ -40,7 +40,7 @@ ProjectedGaussSeidel pile(bool balls, double friction) {
 }
 
 /// @tests{nonsmooth-projection}
-TEST(ProjectedGaussSeidel, EndWhereImpulsesAndSpeedsAgree) {
+TEST(ProjectedGaussSeidel, SatisfiesComplementarityAndCoulombsLaw) {
   for (const bool balls : {true, false}) {
     ProjectedGaussSeidel s = pile(balls, 0.3);
     double change = 1.0;
@@ -68,7 +68,7 @@ TEST(ProjectedGaussSeidel, EndWhereImpulsesAndSpeedsAgree) {
   }
 }
 
-TEST(SphereGaussSeidel, DoWhatTheGeneralOnesDo) {
+TEST(SphereGaussSeidel, AgreesWithTheGeneralSweeps) {
   ProjectedGaussSeidel s = pile(true, 0.3), copy = s;
   ASSERT_TRUE(SphereGaussSeidel::suit(s));
   SphereGaussSeidel balls;
@@ -88,4 +88,4 @@ TEST(SphereGaussSeidel, DoWhatTheGeneralOnesDo) {
 }
 
 }  // namespace
-}  // namespace polhode::impulse_sweeps_tests
+}  // namespace polhode::projected_gauss_seidel_tests

@@ -39,7 +39,7 @@ TEST_P(SparseEngines, ConvergeQuadratically) {
 }
 
 // @tests{eq:ga-residual-vector}
-TEST_P(SparseEngines, LeaveNoResidualAndHoldConstraints) {
+TEST_P(SparseEngines, SatisfyEquationsAndConstraints) {
   const System system = four_bars(2, 1.1).system();
   State state = consistent(system);
   SparseEngine engine(system, GetParam());
@@ -80,7 +80,7 @@ TEST_P(SparseEngines, ConserveEnergyOfLoopsWithRedundantRows) {
   }
 }
 
-TEST_P(SparseEngines, GoOnWithTheLastFactorsWhenTold) {
+TEST_P(SparseEngines, ConvergeWithReusedFactors) {
   const System system = double_pendulum().system();
   State state = consistent(system);
   SparseEngine engine(system, GetParam());
@@ -93,7 +93,7 @@ TEST_P(SparseEngines, GoOnWithTheLastFactorsWhenTold) {
   EXPECT_LT(increment, 1e-12);
 }
 
-TEST_P(SparseEngines, DampTheIncrementWhenTold) {
+TEST_P(SparseEngines, DampTheIncrementByAGivenFactor) {
   const System system = double_pendulum().system();
   const State state = consistent(system);
   SparseEngine engine(system, GetParam());
@@ -109,7 +109,7 @@ TEST_P(SparseEngines, DampTheIncrementWhenTold) {
         1e-15);
 }
 
-TEST_P(SparseEngines, SayWhenTheMatrixIsSingular) {
+TEST_P(SparseEngines, ReportASingularMatrix) {
   Mechanism m = double_pendulum();
   m.model.bodies[0].velocity.x() = std::numeric_limits<double>::quiet_NaN();
   const System system = m.system();

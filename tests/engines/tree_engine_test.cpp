@@ -125,7 +125,7 @@ void expect_same_motion(const Model& model, double rho_inf, const std::string& i
 class TreeOfEveryJoint : public testing::TestWithParam<std::tuple<std::string, double>> {};
 
 /// Every kind between the ground and a body, between bodies, with either side as the parent.
-TEST_P(TreeOfEveryJoint, TakesTheStepsOfTheBlockLu) {
+TEST_P(TreeOfEveryJoint, AgreesWithBlockLuOnTheGround) {
   const auto& [kind, rho_inf] = GetParam();
   const std::vector<std::string> free =
       kind == "generic" ? std::vector<std::string>{"rx", "y"} : std::vector<std::string>{};
@@ -139,7 +139,7 @@ TEST_P(TreeOfEveryJoint, TakesTheStepsOfTheBlockLu) {
 }
 
 /// The same without the ground: a free root carries them.
-TEST_P(TreeOfEveryJoint, FloatsAsTheBlockLu) {
+TEST_P(TreeOfEveryJoint, AgreesWithBlockLuWithAFreeRoot) {
   const auto& [kind, rho_inf] = GetParam();
   const std::vector<std::string> free =
       kind == "generic" ? std::vector<std::string>{"rz", "rx", "z"} : std::vector<std::string>{};
@@ -153,7 +153,7 @@ TEST_P(TreeOfEveryJoint, FloatsAsTheBlockLu) {
 
 /// Every kind closes a loop between two moving bodies whose paths meet at a body, and at the
 /// ground.
-TEST_P(TreeOfEveryJoint, ClosesLoopsAsTheBlockLu) {
+TEST_P(TreeOfEveryJoint, AgreesWithBlockLuWithLoops) {
   const auto& [kind, rho_inf] = GetParam();
   const std::vector<std::string> free =
       kind == "generic" ? std::vector<std::string>{"x", "ry", "rz"} : std::vector<std::string>{};
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, TreeOfEveryJoint,
                                   (std::get<1>(c.param) == 1.0 ? "" : "_damped");
                          });
 
-TEST(TreeEngine, HoldsSpringsBetweenNeighboursDistantBodiesAndTheGround) {
+TEST(TreeEngine, SolvesSpringsBetweenNeighboursDistantBodiesAndGround) {
   for (double rho_inf : {1.0, 0.5, 0.0}) {
     Mechanism m(31);
     std::vector<int> b;
@@ -206,7 +206,7 @@ TEST(TreeEngine, HoldsSpringsBetweenNeighboursDistantBodiesAndTheGround) {
   }
 }
 
-TEST(TreeEngine, CarriesManyLoopsOpenAtOnce) {
+TEST(TreeEngine, SolvesManyOverlappingLoops) {
   Mechanism m(43);
   std::vector<int> left{m.body()}, right{m.body()};
   m.joint("spherical", kGround, left[0]);
@@ -223,7 +223,7 @@ TEST(TreeEngine, CarriesManyLoopsOpenAtOnce) {
 }
 
 /// Different kinds of joints in one chunk, and more than one chunk.
-TEST(TreeEngine, MixesShapesOverSeveralChunks) {
+TEST(TreeEngine, SolvesMixedJointsOverSeveralChunks) {
   Mechanism m(57);
   const std::vector<std::string> kinds{"revolute", "spherical", "universal", "cylindrical",
                                        "planar",   "prismatic", "fixed"};
@@ -254,7 +254,7 @@ TEST(TreeEngine, GivesTheSameMotionWithEveryInstructionSet) {
 }
 
 /// Two runs of one instruction set give equal bits.
-TEST(TreeEngine, RepeatsItself) {
+TEST(TreeEngine, GivesTheSameBitsTwice) {
   Mechanism m(71);
   const int a = m.body(), b = m.body();
   m.joint("spherical", kGround, a);

@@ -69,7 +69,7 @@ TEST(LineSearch, GoesToTheMinimumOfTheParabola) {
 }
 
 // A barrier that begins at a small part of the increment.
-TEST(LineSearch, LengthensAPartFarBelowARejectedOneWhereTheRuleSaysSo) {
+TEST(LineSearch, LengthensAStepFarBelowARejectedOneIfTheRuleAllows) {
   for (const double kink : {0.9, 0.3, 0.11}) {
     const auto merit = [&](double p) { return p <= kink ? std::pow(1.0 - p, 2) : 1e6; };
     const Search s = search(kReduceMerit, merit);
@@ -82,7 +82,7 @@ TEST(LineSearch, LengthensAPartFarBelowARejectedOneWhereTheRuleSaysSo) {
   }
 }
 
-TEST(LineSearch, HalvesUntilAdmissibleAndReportsWhereNothingIs) {
+TEST(LineSearch, HalvesUntilAdmissibleOrReportsFailure) {
   const Search s =
       search(kUntilAdmissible, [](double p) { return p < 0.3 ? kAdmissible : kInadmissible; });
   EXPECT_TRUE(s.accepted);
@@ -96,7 +96,7 @@ TEST(LineSearch, HalvesUntilAdmissibleAndReportsWhereNothingIs) {
   EXPECT_TRUE(search(kReduceMerit, [](double p) { return p < 0.5 ? 0.5 : kInfinity; }).accepted);
 }
 
-TEST(LineSearch, StartsFromTheAdmissiblePartAndEndsAtRoundOff) {
+TEST(LineSearch, StartsFromTheAdmissibleStepAndStopsAtRoundOff) {
   EXPECT_EQ(search(
                 kReduceMerit, [](double) { return 0.1; }, 0.7)
                 .tried,

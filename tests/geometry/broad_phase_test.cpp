@@ -43,14 +43,14 @@ std::vector<Bounds> boxes_in_a_cube(int n, double side, double largest, double r
   return boxes;
 }
 
-TEST(BroadPhase, FindsWhatTryingAllPairsFinds) {
+TEST(BroadPhase, AgreesWithTestingAllPairs) {
   for (const double ratio : {1.0, 4.0, 1000.0}) {
     const auto boxes = boxes_in_a_cube(600, 5.0, 0.8, ratio);
     EXPECT_EQ(found(boxes), by_trying_all(boxes)) << ratio;
   }
 }
 
-TEST(BroadPhase, CopesWithStragglersAndFlatScenes) {
+TEST(BroadPhase, HandlesDistantBoxesAndFlatScenes) {
   auto boxes = boxes_in_a_cube(300, 3.0, 0.5, 2.0);
   for (Bounds& b : boxes) b.low.z() = -0.1, b.high.z() = 0.1;
   boxes.push_back({Vec3::Constant(1e6), Vec3::Constant(1e6 + 1.0)});

@@ -26,7 +26,7 @@ std::string message(double mass, const Mat3& inertia) {
 
 Mat3 diagonal(double xx, double yy, double zz) { return Vec3(xx, yy, zz).asDiagonal(); }
 
-TEST(CheckMassProperties, AcceptsWhatABodyCanHave) {
+TEST(CheckMassProperties, AcceptsPossibleMassProperties) {
   EXPECT_EQ(message(1.0, diagonal(1.0, 2.0, 2.5)), "");
   EXPECT_EQ(message(1e-9, 1e-18 * diagonal(1.0, 2.0, 2.5)), "");
   EXPECT_EQ(message(1e9, inertia_at(kSomeTurn, diagonal(1e12, 2e12, 2.5e12))), "");
@@ -72,7 +72,7 @@ TEST(CheckMassProperties, NamesThePrincipalMomentsAndTheBoundThatIsBroken) {
             "rotation.");
 }
 
-TEST(CheckMassProperties, RecallsTheSignOfTheOffDiagonalEntries) {
+TEST(CheckMassProperties, RemindsOfTheSignOfTheOffDiagonalEntries) {
   Mat3 inertia = diagonal(1.0, 1.0, 1.5);
   inertia(0, 1) = inertia(1, 0) = 1.2;
   EXPECT_NE(message(1.0, inertia).find("xy is −∫ x y dm"), std::string::npos)
@@ -136,7 +136,7 @@ TEST(Composed, DoesNotDependOnTheGrouping) {
   EXPECT_LT((left.inertia - right.inertia).norm(), 1e-13);
 }
 
-TEST(Composed, GoesWithPlacing) {
+TEST(Composed, CommutesWithPlacing) {
   const MassProperties a{.mass = 1.0, .com = {1, 2, 3}, .inertia = diagonal(1, 2, 2.5)};
   const MassProperties b{.mass = 4.0, .com = {0, -2, 1}, .inertia = diagonal(3, 2, 2.5)};
   const Vec3 p(0.1, 0.2, -0.7);
@@ -147,7 +147,7 @@ TEST(Composed, GoesWithPlacing) {
   EXPECT_LT((first.inertia - last.inertia).norm(), 1e-13);
 }
 
-TEST(Composed, TakesAPartOfNegativeMassForAHole) {
+TEST(Composed, TreatsAPartOfNegativeMassAsAHole) {
   const std::array tube_sizes = {0.3, 0.2, 1.0};
   const std::array outer_sizes = {0.3, 1.0};
   const std::array inner_sizes = {0.2, 1.0};

@@ -27,7 +27,7 @@ void expect_nearest(const Vec3& half, const Vec3& y) {
   EXPECT_LT((nearest + t * share - y).norm(), 1e-12 * (y.norm() + half.maxCoeff()));
 }
 
-TEST(NearestOnEllipsoid, IsOnIt) {
+TEST(NearestOnEllipsoid, IsOnTheSurfaceAlongTheNormal) {
   Random random(1);
   for (int k = 0; k < 200000; ++k) {
     Vec3 half;
@@ -39,7 +39,7 @@ TEST(NearestOnEllipsoid, IsOnIt) {
 }
 
 /// Discs as for the ends of cylinders, seen from beside their rims.
-TEST(NearestOnEllipsoid, OfAThinDiscIsOnIt) {
+TEST(NearestOnEllipsoid, OfAThinDiscIsOnTheSurfaceAlongTheNormal) {
   Random random(2);
   for (int k = 0; k < 200000; ++k) {
     const Vec3 half(0.14, 0.14, 0.14 * 2e-3);

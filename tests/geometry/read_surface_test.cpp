@@ -82,7 +82,7 @@ TEST(ReadStl, ReadsTheBinaryFormThatBeginsWithSolid) {
   expect_box(parse_surface("a.STL", binary_stl(box())), {0, 0, 0});
 }
 
-TEST(ReadStl, ReadsLineEndsOfEverySystem) {
+TEST(ReadStl, ReadsLineEndingsOfEverySystem) {
   std::string text = text_stl(box());
   for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2)
     text.replace(i, 1, "\r\n");
@@ -126,7 +126,7 @@ TEST(ReadStl, NamesTheTriangleOfABadNumber) {
             "file again from the program that made it.");
 }
 
-TEST(ReadStl, RefusesWhatIsOutOfPlace) {
+TEST(ReadStl, RefusesKeywordsOutOfOrder) {
   for (const char* text :
        {"solid\nvertex 0 0 0\n", "solid\nfacet\nfacet\n", "solid\nfacet\nendfacet\n",
         "solid\nsolid\n", "solid\nendsolid\nendsolid\n", "solid\nfacet\nendsolid\n",
@@ -169,7 +169,7 @@ TEST(ReadObj, IsExactForAFaceThatIsNotConvex) {
   EXPECT_LT((found.com - Vec3(2.5 / 3.0, 2.5 / 3.0, 0.5)).norm(), 1e-14);
 }
 
-TEST(ReadObj, SaysWhatIsWrongAndWhere) {
+TEST(ReadObj, ReportsErrorsWithTheirLocation) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::string hint = ". Export the file again from the program that made it.";
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 4\n"),
@@ -216,7 +216,7 @@ TEST(ReadSurface, RefusesADirectory) {
   std::filesystem::remove(path);
 }
 
-TEST(ReadSurface, NeverFailsOtherThanByAMessage) {
+TEST(ReadSurface, FailsOnlyWithAMessage) {
   // Every truncation of three files: it is read or refused.
   for (const auto& [name, bytes] : {std::pair{"a.stl", text_stl(box())},
                                     {"a.stl", binary_stl(box())},

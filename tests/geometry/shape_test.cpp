@@ -57,7 +57,7 @@ TEST(MeshShape, RefusesTrianglesWithoutArea) {
             "program that made it remove degenerate triangles, or set contact: {touches: false}.");
 }
 
-TEST(MeshShape, RefusesSizesBeyondReason) {
+TEST(MeshShape, RefusesImplausibleSizes) {
   TriangleSurface surface = parse_surface("cube.obj", kCube);
   for (Vec3& x : surface.points) x *= 1e200;
   EXPECT_EQ(refusal([&] { return mesh("cube.obj", surface); }),
@@ -73,7 +73,7 @@ TEST(HullShape, RefusesPointsAlmostInAPlane) {
 }
 
 /// Files found by fuzzers.
-TEST(SurfaceFiles, ThatBrokeShapesAreReadOrRefused) {
+TEST(SurfaceFiles, FoundByFuzzersAreReadOrRefused) {
   int count = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(test::source_dir() + "/tests/fuzz/found_in_surfaces")) {

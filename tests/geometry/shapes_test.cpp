@@ -28,7 +28,7 @@ class EveryShape : public testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(EveryShape, HasMassPropertiesThatABodyCanHave) {
+TEST_P(EveryShape, HasPossibleMassProperties) {
   EXPECT_NO_THROW(check_mass_properties("shape", exact_.mass, exact_.inertia));
 }
 
@@ -87,7 +87,7 @@ MassProperties of(const char* name, const std::vector<double>& sizes) {
   return shape_mass_properties(name, *find_shape_kind(name), sizes, 1.0);
 }
 
-TEST(Shapes, TakeFullLengths) {
+TEST(Shapes, TakeDiametersAndTotalLengths) {
   EXPECT_NEAR(of("sphere", {2.0}).mass, 4.0 / 3.0 * std::numbers::pi, 1e-14);
   EXPECT_NEAR(of("cylinder", {2.0, 3.0}).mass, 3.0 * std::numbers::pi, 1e-14);
   EXPECT_NEAR(of("cone", {2.0, 3.0}).mass, std::numbers::pi, 1e-14);
@@ -109,7 +109,7 @@ TEST(Shapes, AgreeWhereOneKindBecomesAnother) {
   EXPECT_NEAR(hoop.inertia(2, 2) / hoop.mass, 1.0, 2e-9);
 }
 
-TEST(Shapes, SayWhatDoesNotFit) {
+TEST(Shapes, ReportInconsistentSizes) {
   const auto message = [](const char* name, const std::vector<double>& sizes,
                           double density = 1.0) {
     try {

@@ -43,7 +43,7 @@ TEST(SurfaceMassProperties, OfTheCornerTetrahedronAreItsClosedForms) {
   EXPECT_LT((found.inertia - J).norm(), 1e-15);
 }
 
-TEST(SurfaceMassProperties, GoWithTheMotionOfTheSurface) {
+TEST(SurfaceMassProperties, TransformWithTheMotionOfTheSurface) {
   const Mat3 R = exp_map(Vec3(0.7, -0.4, 1.3));
   const Vec3 p(1e3, -2e3, 5e2);  // far away, to test cancellation in the parallel-axes terms
   TriangleSurface moved = tetrahedron();
@@ -56,7 +56,7 @@ TEST(SurfaceMassProperties, GoWithTheMotionOfTheSurface) {
   EXPECT_LT((found.inertia - expected.inertia).norm(), 3e-12);
 }
 
-TEST(SurfaceMassProperties, TakeAnInnerShellThatFacesInwardForACavity) {
+TEST(SurfaceMassProperties, TreatAnInnerShellThatFacesInwardAsACavity) {
   TriangleSurface hollow = box();
   TriangleSurface inner = scaled(box(), 0.5);
   const int shift = static_cast<int>(hollow.points.size());
@@ -73,7 +73,7 @@ TEST(SurfaceMassProperties, TakeAnInnerShellThatFacesInwardForACavity) {
 
 TEST(CheckClosed, AcceptsAClosedSurface) { EXPECT_EQ(refusal(tetrahedron()), ""); }
 
-TEST(CheckClosed, CountsOpenEdgesAndSaysWhereTheFirstIs) {
+TEST(CheckClosed, CountsOpenEdgesAndLocatesTheFirst) {
   TriangleSurface open = tetrahedron();
   open.triangles.pop_back();
   EXPECT_EQ(refusal(open),
@@ -89,7 +89,7 @@ TEST(CheckClosed, CountsEdgesOfMoreThanTwoTriangles) {
   EXPECT_NE(refusal(crowded).find("3 to more than two"), std::string::npos);
 }
 
-TEST(CheckClosed, NoticesATriangleThatIsTurnedRound) {
+TEST(CheckClosed, DetectsATriangleOfOppositeOrientation) {
   TriangleSurface surface = tetrahedron();
   std::swap(surface.triangles[3][0], surface.triangles[3][1]);
   EXPECT_EQ(refusal(surface),
@@ -104,12 +104,12 @@ TEST(CheckClosed, RefusesASheetFoldedOntoItself) {
   EXPECT_NE(refusal(sheet).find("encloses no volume (its area is 1 m²)"), std::string::npos);
 }
 
-TEST(CheckClosed, RefusesNothingAtAll) {
+TEST(CheckClosed, RefusesASurfaceWithoutTriangles) {
   EXPECT_EQ(refusal({}),
             "part.stl: the surface has no triangles. Export it again as a triangle mesh.");
 }
 
-TEST(OrientOutward, TurnsASurfaceThatFacesInwardAndNoOther) {
+TEST(OrientOutward, FlipsOnlySurfacesThatFaceInward) {
   TriangleSurface inward = tetrahedron();
   for (auto& corners : inward.triangles) std::swap(corners[0], corners[1]);
   EXPECT_LT(signed_volume(inward), 0.0);
@@ -119,7 +119,7 @@ TEST(OrientOutward, TurnsASurfaceThatFacesInwardAndNoOther) {
   EXPECT_EQ(refusal(inward), "");
 }
 
-TEST(JoinEqualPoints, MakesOnePointOfEqualsAndDropsWhatCollapses) {
+TEST(JoinEqualPoints, MergesEqualPointsAndDropsCollapsedTriangles) {
   TriangleSurface soup;
   const TriangleSurface solid = tetrahedron();
   for (const auto& corners : solid.triangles) {

@@ -13,7 +13,7 @@ namespace {
 
 using contact::TriangleTree;
 
-TEST(TriangleTree, FindsWhatALookAtAllTrianglesFinds) {
+TEST(TriangleTree, AgreesWithTestingAllTriangles) {
   const TriangleSurface ring = torus(0.35, 0.15);
   const TriangleTree tree(ring.points, ring.triangles);
   Random random(5);
@@ -39,7 +39,7 @@ TEST(TriangleTree, FindsWhatALookAtAllTrianglesFinds) {
   }
 }
 
-TEST(TriangleTree, KnowsHowOftenASurfaceWindsAroundAPoint) {
+TEST(TriangleTree, ComputesTheWindingNumberOfASurface) {
   const double R = 0.35, r = 0.15;
   const TriangleSurface ring = torus(R, r, 48);
   const TriangleTree tree(ring.points, ring.triangles);

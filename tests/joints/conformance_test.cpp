@@ -204,7 +204,7 @@ int rank(const Mat& G) {
   return static_cast<int>((svd.singularValues().array() > 1e-9).count());
 }
 
-TEST_P(EveryJoint, IsMinimal) {
+TEST_P(EveryJoint, HasIndependentRows) {
   for_cases([](const JointCase& c, const StepContext& context, Random& random) {
     const Joint joint = make_joint(c, random_frames(random));
     const PairMotion m = assembled(joint, random, context);

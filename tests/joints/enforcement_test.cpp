@@ -58,7 +58,7 @@ TEST_P(EveryPenalisedJoint, HasTheGradientOfItsRows) {
 // With λ = −k g the work of the wrenches is the decrease of the springs' energy, for turns of a
 // radian.
 // @tests{compliance-row}
-TEST_P(EveryPenalisedJoint, TakesWhatItStores) {
+TEST_P(EveryPenalisedJoint, StoresTheWorkDoneOnIt) {
   for_samples([](const Joint& joint, const PairMotion& given) {
     if (given.context.ga.rho_inf != 1.0) return;
     PairMotion m = given;
@@ -75,7 +75,7 @@ TEST_P(EveryPenalisedJoint, TakesWhatItStores) {
 
 // The weight of a row that is a tenth as stiff as the stiffest joint is 10, and it is exact.
 // @tests{augmented-rows}
-TEST_P(EveryPenalisedJoint, IsExactAndWeightedWhereItIsAugmented) {
+TEST_P(EveryPenalisedJoint, IsExactAndWeightedWithAugmentedRows) {
   for (const JointCase& c : joint_cases(GetParam())) {
     Random random(7);
     Joint joint = make_joint(c, random_frames(random));
@@ -98,7 +98,7 @@ std::vector<std::string> kinds_with_rows() {
 INSTANTIATE_TEST_SUITE_P(Registry, EveryPenalisedJoint, testing::ValuesIn(kinds_with_rows()),
                          [](const auto& with) { return with.param; });
 
-TEST(JointEnforcement, AsksForTheStiffnessesThatTheRowsNeed) {
+TEST(JointEnforcement, RequiresTheStiffnessesOfItsRows) {
   const JointKind& hinge = joint_kind("revolute");
   Joint joint("hinge", "revolute", Participants{0, 1}, hinge.recipe({}, {}));
   const auto refused_at = [&](const JointEnforcement& e, double stiffest) -> std::string {

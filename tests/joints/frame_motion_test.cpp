@@ -130,7 +130,7 @@ TEST(FrameMotion, KeepsTheTangentsOfItsJoint) {
 
 // The bodies and the drive together give the whole change of g; the wrenches are opposite where the
 // points meet. @tests{moving-frame}
-TEST(FrameMotion, PutsInWhatTheBodiesGet) {
+TEST(FrameMotion, SuppliesTheWorkDoneOnTheBodies) {
   for_moving_joints([](const Joint& joint, const PairMotion& m) {
     if (m.context.ga.rho_inf != 1.0) return;
     const PairTerms t = evaluate(joint, m);
@@ -152,7 +152,7 @@ TEST(FrameMotion, PutsInWhatTheBodiesGet) {
   });
 }
 
-TEST(FrameMotion, IsRefusedByADistance) {
+TEST(FrameMotion, IsRefusedByADistanceJoint) {
   Random random(1);
   Joint joint = make_joint(joint_cases("distance").front(), random_frames(random));
   EXPECT_THROW(joint.set_motion(swinging(FrameMotion::Rotation::none)), InputError);

@@ -48,7 +48,7 @@ TEST(GenericJoint, NamesItsCoordinatesByTheUsersAxes) {
   EXPECT_EQ(names({"rx", "ry", "rz"}), (std::vector<std::string>{"rx", "ry", "rz"}));
 }
 
-TEST(GenericJoint, RefusesWhatIsNoChoice) {
+TEST(GenericJoint, RefusesInvalidFreedoms) {
   EXPECT_EQ(message({"rw"}),
             "free: 'rw' is no freedom of a joint. Use some of: x, y, z, rx, ry, rz.");
   EXPECT_EQ(message({"x", "x"}), "free: 'x' is given twice. Give each freedom once.");

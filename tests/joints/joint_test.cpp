@@ -130,7 +130,7 @@ TEST(Joint, KeepsTheOrientationOfTheStart) {
   EXPECT_TRUE(joint_of_type("revolute").acceptable({a, stays, context, nullptr, nullptr}));
 }
 
-TEST(Joint, OffersTheTreeWhatHoldsThreeRowsOrMore) {
+TEST(Joint, HasAMotionBasisIfItHasThreeRowsOrMore) {
   for (const char* type : {"distance", "point_in_plane", "point_on_line", "parallel_axes"}) {
     JointParameters p;
     p.values["distance"] = 1.0;

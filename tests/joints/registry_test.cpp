@@ -8,14 +8,14 @@
 
 namespace polhode::test::registry_tests {
 
-TEST(JointRegistry, SaysWhatEachKindLeavesFree) {
+TEST(JointRegistry, StatesTheFreeMotionsOfEachKind) {
   for (const JointKind& kind : joint_kinds()) {
     if (kind.takes_free_list || kind.points_apart) continue;
     EXPECT_EQ(free_motions(kind.name), kind.free) << kind.name;
   }
 }
 
-TEST(JointRegistry, GivesEachNameOnce) {
+TEST(JointRegistry, HasUniqueNames) {
   std::set<std::string> names;
   for (const JointKind& kind : joint_kinds()) EXPECT_TRUE(names.insert(kind.name).second);
 }

@@ -169,7 +169,7 @@ TEST(SlackLink, HasTheTangentsOfItsStops) { expect_tangents_of_stops("slack_link
 // Work of the wrench: the energy that the bristle stores and dissipates; it never returns more than
 // it stored.
 // @tests{contact-bristle}
-TEST_P(EveryResistance, NeverGivesEnergyByFriction) {
+TEST_P(EveryResistance, NeverAddsEnergyByFriction) {
   for (const State state : {State::sticks, State::slips})
     for (unsigned seed = 1; seed <= 60; ++seed) {
       const auto [joint, m] =
@@ -258,7 +258,7 @@ TEST(JointFriction, SlipsAtTheLimitOfItsKind) {
   EXPECT_NEAR(w[4], 0.0, 1e-12);
 }
 
-TEST(JointFriction, IsRefusedWhereItHasNoMeaning) {
+TEST(JointFriction, IsRefusedOnAJointWithoutFreedoms) {
   Joint joint("j", "fixed", Participants{0, 1}, joint_kind("fixed").recipe(JointFrames{}, {}));
   EXPECT_THROW(joint.set_resistance({}), InputError);
 }

@@ -123,7 +123,7 @@ TEST(BlockCg, NeedsOneIterationWhereNoContactsFormALoop) {
 
 /// Sliding points whose friction follows their normal forces: every direction of GMRES reduces the
 /// residual of the unsymmetric system; without them it is not solved.
-TEST(BlockCg, FollowsNormalForcesWithFriction) {
+TEST(BlockCg, SolvesWithFrictionThatFollowsNormalForces) {
   ManyBodies c = many_bodies(40, 100.0, 3);
   Numbers number(8);
   for (ContactSpring& s : c.springs) {
@@ -148,11 +148,11 @@ TEST(BlockCg, FollowsNormalForcesWithFriction) {
 
 /// Ties between bodies and rows between them and the ground, some of them redundant, beside points
 /// whose friction follows normal forces. @tests{cg-rows}
-TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
-  for (const bool rubbing : {false, true}) {
+TEST(BlockCg, SatisfiesRowsAsADirectSolverDoes) {
+  for (const bool with_friction : {false, true}) {
     ManyBodies c = many_bodies(40, 20.0, 3);
     Numbers number(8);
-    if (rubbing)
+    if (with_friction)
       for (ContactSpring& s : c.springs) {
         s.normal = Vec3(number(), number(), number()).normalized();
         s.friction_slope = 3.0 * s.normal.cross(Vec3(number(), number(), number())).normalized();
@@ -197,19 +197,20 @@ TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
     cg.set_ties(ties);
     ASSERT_TRUE(cg.set_rows(rows));
     std::vector<Vec6> x;
-    cg.solve(rhs, x, 1e-13, 2000, rubbing ? 4 : 0);
-    const double close = rubbing ? 2e-2 : 1e-4;
+    cg.solve(rhs, x, 1e-13, 2000, with_friction ? 4 : 0);
+    const double close = with_friction ? 2e-2 : 1e-4;
     EXPECT_LT((constraints * flat(x) - right.tail(m)).norm(), 1e-4 * right.tail(m).norm());
-    EXPECT_LT((flat(x) - reference.head(n)).norm(), close * reference.head(n).norm()) << rubbing;
+    EXPECT_LT((flat(x) - reference.head(n)).norm(), close * reference.head(n).norm())
+        << with_friction;
     const Vec carried = constraints.transpose() * cg.multipliers();
     const Vec expected = constraints.transpose() * reference.tail(m);
-    EXPECT_LT((carried - expected).norm(), close * expected.norm()) << rubbing;
+    EXPECT_LT((carried - expected).norm(), close * expected.norm()) << with_friction;
   }
 }
 
 /// A hinged body that another one hits at an arm, with a stiffness far above inertia: rows that
 /// nearly oppose the contact hold to the rounding of the displacement.
-TEST(BlockCg, HoldsTheRowsOfABodyInAStiffContact) {
+TEST(BlockCg, SatisfiesTheRowsOfABodyInAStiffContact) {
   for (const double stiffness : {1.0, 1e3, 1e5}) {
     ManyBodies c;
     c.blocks.assign(2, Mat6::Identity());
@@ -237,7 +238,7 @@ TEST(BlockCg, HoldsTheRowsOfABodyInAStiffContact) {
 
 /// Repeated solution as in Newton iterations: the residual of one is the right-hand side of the
 /// next.
-TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
+TEST(BlockCg, ReachesDoublePrecisionByRepeatedSolution) {
   for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness
     ManyBodies c = many_bodies(40, 100.0, 3);
     for (Mat6& B : c.blocks) B *= unit;
@@ -281,7 +282,7 @@ TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
 }
 
 /// Springs so stiff that masses vanish in single precision.
-TEST(BlockCg, StandsSpringsOfAnyStiffness) {
+TEST(BlockCg, HandlesSpringsOfAnyStiffness) {
   const ManyBodies c = many_bodies(12, 1e12, 7);
   BlockCg cg;
   set(cg, c);
@@ -291,7 +292,7 @@ TEST(BlockCg, StandsSpringsOfAnyStiffness) {
 }
 
 /// A x = f with only the rows and columns of the bodies that move.
-TEST(BlockCg, LeavesBodiesWhereTheyAre) {
+TEST(BlockCg, DoesNotMoveBodiesThatAreLeftOut) {
   const ManyBodies c = many_bodies(40, 20.0, 3);
   const std::vector<int> moving{1, 2, 3, 7, 8, 20, 39};
   BlockCg cg;

@@ -19,13 +19,13 @@ KktTopology revolute_chain(int n) {
   return t;
 }
 
-TEST(GatherNodes, PutsEachBodyTogetherWithTheJointToItsParent) {
+TEST(GatherNodes, GroupsEachBodyWithTheJointToItsParent) {
   const NodeGraph graph = gather_nodes(revolute_chain(4));
   EXPECT_EQ(graph.width, (std::vector<int>{11, 11, 11, 11}));
   EXPECT_EQ(graph.row_node, (std::vector<int>{0, 1, 2, 3}));
 }
 
-TEST(GatherNodes, LetsLoopRowsWaitForBothBodies) {
+TEST(GatherNodes, EliminatesLoopRowsAfterBothBodies) {
   KktTopology t = revolute_chain(3);
   add_pair(t, 2, 0, 1);
   const NodeGraph graph = gather_nodes(t);
@@ -54,7 +54,7 @@ TEST(BlockLu, CountsWorkInProportionToTheLengthOfAChain) {
 }
 
 /// With fused multiply-add the last digits depend on the processor.
-TEST(BlockLu, LeavesOutFusedMultiplyAddIfAsked) {
+TEST(BlockLu, DoesWithoutFusedMultiplyAddOnRequest) {
   if (!has_fused_kernels()) GTEST_SKIP() << "this processor has none";
   KktTopology topology = revolute_chain(20);
   test::Numbers number(3);

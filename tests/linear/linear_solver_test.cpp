@@ -183,14 +183,14 @@ TEST_P(LinearSolvers, GiveTheSameBitsEachTime) {
   EXPECT_EQ(first, second);
 }
 
-TEST_P(LinearSolvers, KnowTheirName) {
+TEST_P(LinearSolvers, HaveTheNameTheyAreMadeBy) {
   EXPECT_EQ(make_linear_solver(GetParam())->name(), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LinearSolvers, testing::Values("block_lu", "klu", "sparse_lu"),
                          [](const auto& one) { return std::string(one.param); });
 
-TEST(MakeLinearSolver, SaysWhichNamesItKnows) {
+TEST(MakeLinearSolver, ListsTheNamesWhenOneIsUnknown) {
   try {
     (void)make_linear_solver("cholesky");
     FAIL() << "accepted";

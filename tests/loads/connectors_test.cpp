@@ -98,7 +98,7 @@ void slide(LoadDescription& d) { d.displacement = FreeDisplacement{d.Z_a, d.Z_b,
 }  // namespace
 
 // @tests{law-mean}
-TEST(Connectors, SpringsInJointsGiveBackWhatTheyStore) {
+TEST(Connectors, SpringsInJointsReturnTheEnergyTheyStore) {
   for (const char* acts : {"both", "tension", "compression"}) {
     expect_laws<TorsionalSpring>([&](LoadDescription& d) {
       hinge(d);
@@ -117,7 +117,7 @@ TEST(Connectors, SpringsInJointsGiveBackWhatTheyStore) {
 }
 
 // @tests{spring-gradient}
-TEST(Connectors, SpringsBetweenPointsGiveBackWhatTheyStore) {
+TEST(Connectors, SpringsBetweenPointsReturnTheEnergyTheyStore) {
   for (const char* acts : {"both", "tension", "compression"})
     expect_laws<SpringDamper>([&](LoadDescription& d) {
       d.values = {{"stiffness", 5.0}, {"quadratic", 2.0}, {"damping", 0.3}};
@@ -132,7 +132,7 @@ TEST(Connectors, SpringsBetweenPointsGiveBackWhatTheyStore) {
 }
 
 // A potential that is given as a function. @tests{law-mean}
-TEST(Connectors, PotentialsGiveBackWhatTheyStore) {
+TEST(Connectors, PotentialsReturnTheEnergyTheyStore) {
   class Potential final : public TimeFunction {
    public:
     double operator()(double l) const override { return 0.4 * l * l * l - 3.0 / l; }
@@ -153,7 +153,7 @@ TEST(Connectors, GravityBetweenBodiesHasAPotential) {
 }
 
 // @tests{bushing-cayley}
-TEST(Connectors, BushingsGiveBackWhatTheyStore) {
+TEST(Connectors, BushingsReturnTheEnergyTheyStore) {
   const auto change = [](LoadDescription& d) {
     Mat6 L = Mat6::Zero();
     for (int i = 0; i < 6; ++i)
@@ -180,7 +180,7 @@ TEST(Connectors, BushingsGiveBackWhatTheyStore) {
 }
 
 // @tests{servo-law}
-TEST(Connectors, ServosPutInForceTimesMotion) {
+TEST(Connectors, ServosSupplyTheWorkOfTheirForces) {
   for (const char* drive : {"angle", "speed"})
     for (const double limit : {0.0, 0.5})
       expect_laws<RotaryServo>([&](LoadDescription& d) {
@@ -199,7 +199,7 @@ TEST(Connectors, ServosPutInForceTimesMotion) {
 }
 
 // @tests{drag-law}
-TEST(Connectors, DragAndDampersTakeTheWorkOfTheirForces) {
+TEST(Connectors, DragAndDampersDissipateTheWorkOfTheirForces) {
   const auto change = [](LoadDescription& d) {
     d.values = {{"linear", 0.4}, {"quadratic", 0.3}, {"turning", 0.2}, {"per_mass", 0.5}};
     d.values["damping"] = 0.7;
@@ -320,7 +320,7 @@ TEST(Connectors, SurfacesDoNoWorkAndHaveTheirTangents) {
 }
 
 // Second derivative of the row by differences along a free motion.
-TEST(Connectors, GearsKnowTheirAccelerations) {
+TEST(Connectors, GearsHaveTheirAccelerationTerms) {
   using Kind = GearCoordinate::Kind;
   for (const Kind kind : {Kind::centres, Kind::axes, Kind::angle, Kind::displacement}) {
     auto [d, m] = gear_sample(2, context_of(0.0), kind);

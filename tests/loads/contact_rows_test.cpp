@@ -195,7 +195,7 @@ TEST(Rolling, DoesNoWorkAndHasItsTangents) {
   expect_laws<Rolling>(ball);
 }
 
-TEST(Rolling, KnowsItsAccelerations) {
+TEST(Rolling, HasTheAccelerationTermsOfItsConstraint) {
   expect_accelerations<Rolling>(knife_edge);
   expect_accelerations<Rolling>(torus);
   expect_accelerations<Rolling>(ball);
@@ -207,13 +207,13 @@ TEST(PointOnCurve, DoesNoWorkAndHasItsTangents) {
   expect_laws<PointOnCurve>(groove);
 }
 
-TEST(PointOnCurve, KnowsItsAccelerations) {
+TEST(PointOnCurve, HasTheAccelerationTermsOfItsConstraint) {
   expect_accelerations<PointOnCurve>(ellipse);
   expect_accelerations<PointOnCurve>(groove);
 }
 
 // A circle of 2 m, counter-clockwise: |P| − 2 to the right, 2 − |P| to the left.
-TEST(PointOnCurve, DistancesOfACircleAreThoseOfItsCentre) {
+TEST(PointOnCurve, HasDistancesOfACircleByThoseOfItsCentre) {
   const auto x = std::make_shared<Wave>(2.0, 0.0);
   const auto y = std::make_shared<Wave>(2.0, 0.5 * 3.14159265358979323846);
   for (const double side : {1.0, -1.0}) {
@@ -236,14 +236,14 @@ TEST(CurveOnCurve, DoesNoWorkAndHasItsTangents) {
   expect_laws<CurveOnCurve>(inside);
 }
 
-TEST(CurveOnCurve, KnowsItsAccelerations) {
+TEST(CurveOnCurve, HasTheAccelerationTermsOfItsConstraint) {
   expect_accelerations<CurveOnCurve>(outside);
   expect_accelerations<CurveOnCurve>(inside);
 }
 
 // Two circles are apart by the distance of their centres less both radii, and the first search
 // finds the same pair of places from any side.
-TEST(CurveOnCurve, DistancesOfCirclesAreThoseOfTheirCentres) {
+TEST(CurveOnCurve, HasDistancesOfCirclesByThoseOfTheirCentres) {
   const auto circle = [](double r, double x, double side) {
     return PlanarCurve(std::make_shared<Wave>(r, 0.0, x),
                        std::make_shared<Wave>(r, 0.5 * 3.14159265358979323846),
@@ -269,7 +269,7 @@ TEST(CurveOnCurve, DistancesOfCirclesAreThoseOfTheirCentres) {
     }
 }
 
-TEST(Rolling, RefusesAnEdgeRounderThanTheWheel) {
+TEST(Rolling, RefusesAnEdgeRadiusAboveThatOfTheWheel) {
   System system;
   LoadDescription d;
   d.name = "tyre";

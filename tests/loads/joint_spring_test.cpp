@@ -50,7 +50,7 @@ TEST(TorsionalSpring, HasTheTangentOfItsWrench) {
 }
 
 // @tests{torsion-gradient}
-TEST(TorsionalSpring, GivesBackExactlyWhatItStoredTurnsCounted) {
+TEST(TorsionalSpring, ReturnsExactlyTheEnergyItStoredOverFullTurns) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const auto [spring, m] = sample(seed, context_of(1.0), 10.0, 0.0);
     EXPECT_TRUE(spring.conservative());
@@ -68,7 +68,7 @@ TEST(TorsionalSpring, DissipatesTheWorkOfItsDamper) {
   }
 }
 
-TEST(TorsionalSpring, ActsOnBothBodiesAlike) {
+TEST(TorsionalSpring, ActsOnBothBodiesWithOppositeMoments) {
   const auto [spring, m] = sample(3, context_of(0.5), 3.0, 2.0);
   const PairTerms t = evaluate(spring, m);
   EXPECT_EQ(t.wrench_a, Vec6(-t.wrench_b));

@@ -106,7 +106,7 @@ void expect_laws(const std::function<void(LoadDescription&)>& change, bool on_b_
 }  // namespace
 
 // @tests{callable-force}
-TEST(LoadFunction, OfAPointHasItsTangentAndBooksItsWork) {
+TEST(LoadFunction, OfAPointHasItsTangentAndReportsItsWork) {
   for (const bool body_fixed : {false, true})
     for (const bool with_derivative : {true, false}) {
       const auto change = [&](LoadDescription& d) {
@@ -121,7 +121,7 @@ TEST(LoadFunction, OfAPointHasItsTangentAndBooksItsWork) {
 }
 
 // @tests{callable-force}
-TEST(LoadFunction, OfACoordinateHasItsTangentAndBooksItsWork) {
+TEST(LoadFunction, OfACoordinateHasItsTangentAndReportsItsWork) {
   for (const bool with_derivative : {true, false}) {
     const double tolerance = with_derivative ? 1e-7 : 2e-6;
     expect_laws<RotaryMotor>(
@@ -163,7 +163,7 @@ TEST(LoadFunction, ReadsTheMeanOfTheStepAndDependsOnNothingElse) {
   EXPECT_LT((mean * b.Lambda_n.transpose() - b.Lambda_n1 * mean.transpose()).norm(), 1e-13);
 }
 
-TEST(LoadFunction, OfAPartCountsInThePartsAxes) {
+TEST(LoadFunction, OfAPartUsesTheAxesOfThePart) {
   Random random(5);
   for (const bool mirrored : {false, true})
     for (const bool axial : {false, true})
@@ -209,7 +209,7 @@ TEST(LoadFunction, OfAPartCountsInThePartsAxes) {
 }
 
 // The pose of a part in a part is the composition of both poses.
-TEST(LoadFunction, OfAPartInAPartCountsInItsAxes) {
+TEST(LoadFunction, OfANestedPartUsesTheAxesOfThatPart) {
   Random random(6);
   PartAxes inner, outer;
   inner.origin = random.vector();

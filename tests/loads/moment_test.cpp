@@ -27,7 +27,7 @@ TEST(Moment, HasTheTangentOfItsWrench) {
     }
 }
 
-TEST(Moment, PutsInItsWork) {
+TEST(Moment, ReportsItsWorkAsSupplied) {
   for (const bool body_fixed : {false, true}) {
     Random random(2);
     const Moment moment(description(random, body_fixed));
@@ -38,7 +38,7 @@ TEST(Moment, PutsInItsWork) {
 }
 
 // The axis of rotation is mapped to itself, so the average of the rotated moment is the moment.
-TEST(Moment, IsTheSameInBothAxesWhenTheBodyTurnsAboutIt) {
+TEST(Moment, IsTheSameInGroundAndBodyAxesIfTheBodyTurnsAboutIt) {
   Random random(3);
   PairMotion m(random, context_of(1.0));
   m.b_n.q.setIdentity();

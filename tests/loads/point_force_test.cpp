@@ -31,7 +31,7 @@ TEST(PointForce, HasTheTangentOfItsWrench) {
     }
 }
 
-TEST(PointForce, IsTakenAtTheTimeOfTheForces) {
+TEST(PointForce, IsEvaluatedAtTheTimeOfTheForces) {
   for (const double rho_inf : {1.0, 0.5, 0.0}) {
     Random random(2);
     LoadDescription d = description(random, false);
@@ -57,7 +57,7 @@ TEST(PointForce, TurnsWithTheBodyIfItIsFixedToIt) {
 }
 
 // f·Δx for turns of a radian; exact at ρ∞ = 1, so round-off remains.
-TEST(PointForce, GivesBackWhatAConstantForceStores) {
+TEST(PointForce, ReturnsTheEnergyStoredByAConstantForce) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Random random(seed);
     const PointForce force(description(random, false));
@@ -69,7 +69,7 @@ TEST(PointForce, GivesBackWhatAConstantForceStores) {
   }
 }
 
-TEST(PointForce, PutsInItsWorkOtherwise) {
+TEST(PointForce, ReportsItsWorkAsSuppliedIfItVaries) {
   for (const bool body_fixed : {false, true}) {
     Random random(4);
     LoadDescription d = description(random, body_fixed);

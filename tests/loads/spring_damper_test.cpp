@@ -32,7 +32,7 @@ TEST(SpringDamper, HasTheTangentOfItsWrench) {
 
 // Steps of the size of the spring itself; round-off of k l² ~ 1e2.
 // @tests{spring-gradient}
-TEST(SpringDamper, GivesBackExactlyWhatItStored) {
+TEST(SpringDamper, ReturnsExactlyTheEnergyItStored) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     Random random(seed);
     const SpringDamper spring(description(random, 30.0, 0.0, 0.7));
@@ -43,7 +43,7 @@ TEST(SpringDamper, GivesBackExactlyWhatItStored) {
   }
 }
 
-TEST(SpringDamper, DoesNotGiveBackExactlyInPlainForm) {
+TEST(SpringDamper, DoesNotReturnItsEnergyExactlyWithMidpointForces) {
   Random random(1);
   const SpringDamper spring(description(random, 30.0, 0.0, 0.7));
   PairMotion m(random, context_of(1.0));

@@ -44,7 +44,7 @@ TEST_P(Cayley, TurnsByTwiceTheArctangentOfHalfTheLength) {
   EXPECT_LT(distance(cay(2.0 * std::tan(0.5 * angle) * n), exp_map(angle * n)), 2e-15);
 }
 
-TEST_P(Cayley, IsUndoneByItsVector) {
+TEST_P(Cayley, IsInvertedByTheCayleyVector) {
   EXPECT_LT(distance(cayley_vector(cay(chi_)), chi_), 1e-15 * (4.0 + chi_.squaredNorm()));
 }
 

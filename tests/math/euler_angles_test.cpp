@@ -47,7 +47,7 @@ TEST(EulerAngles, AreThoseOfEverySequence) {
   }
 }
 
-TEST(EulerAngles, GiveTheRotationWhereAxesFallTogether) {
+TEST(EulerAngles, GiveTheRotationInGimbalLock) {
   for (const std::string sequence : kSequences) {
     const bool twice = sequence[0] == sequence[2];
     for (const double b : twice ? std::array{0.0, std::numbers::pi}

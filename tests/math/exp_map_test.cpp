@@ -44,12 +44,12 @@ TEST_P(ExpMap, AddsAnglesAboutOneAxis) {
   EXPECT_LT(distance(exp_map(-chi_), Lambda_.transpose()), 1e-15);
 }
 
-TEST_P(ExpMap, IsUndoneByTheLogarithm) {
+TEST_P(ExpMap, IsInvertedByTheLogarithm) {
   EXPECT_LT(distance(log_map(Lambda_), chi_), 4e-15);  // every sample is below π
 }
 
 // @tests{eq:rbr-orthogonal-transformation}
-TEST_P(ExpMap, GoesWithAnOrthogonalTransformation) {
+TEST_P(ExpMap, TransformsWithAnOrthogonalTensor) {
   const Mat3 Q = exp_map(Vec3(-0.6, 1.4, 0.2));
   EXPECT_LT(distance(Q * Lambda_ * Q.transpose(), exp_map(Q * chi_)), 2e-15);
   EXPECT_LT(distance(Q * hat(chi_) * Q.transpose(), hat(Q * chi_)), 2e-15);

@@ -22,7 +22,7 @@ TEST(Hat, IsMinusThePermutationTensorTimesTheVector) {
     }
 }
 
-TEST(Hat, TakesTheCrossProduct) {
+TEST(Hat, GivesTheCrossProduct) {
   // Compilers that fuse a product and a sum round the two differently.
   EXPECT_LT((hat(kChi) * kV - kChi.cross(kV)).norm(), 1e-15);
   EXPECT_LT((hat(kChi) * kChi).norm(), 1e-16);
@@ -34,7 +34,7 @@ TEST(Hat, OfACrossProductIsTheCommutator) {
   EXPECT_LT((hat(kChi.cross(kV)) - commutator).norm(), 1e-15);
 }
 
-TEST(Vee, UndoesHatAndIgnoresTheSymmetricPart) {
+TEST(Vee, InvertsHatAndIgnoresTheSymmetricPart) {
   EXPECT_EQ(vee(hat(kChi)), kChi);
   const Mat3 symmetric = kV * kV.transpose();
   EXPECT_LT((vee(hat(kChi) + symmetric) - kChi).norm(), 1e-15);

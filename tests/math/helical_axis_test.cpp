@@ -34,7 +34,7 @@ TEST(HelicalAxis, IsThatOfAScrewsDisplacement) {
   }
 }
 
-TEST(HelicalAxis, IsTheDirectionWhereNothingTurns) {
+TEST(HelicalAxis, IsTheDirectionOfMotionInATranslation) {
   const HelicalAxis rate = helical_axis(Vec3::Zero(), Vec3(0, 0, -2), Vec3::Zero());
   EXPECT_EQ(rate.direction, Vec3(0, 0, -1));
   EXPECT_EQ(rate.slide, 2.0);

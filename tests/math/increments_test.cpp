@@ -31,7 +31,7 @@ TEST_P(Increments, CarryAVectorTheSameWayInEitherFrame) {
 }
 
 // @tests{eq:rbr-material-spatial-increments} @tests{eq:rbr-material-spatial-redux}
-TEST_P(Increments, AreOneVectorSeenFromTwoFrames) {
+TEST_P(Increments, AreTheSameVectorInTwoFrames) {
   EXPECT_LT(distance(exp_map(theta_) * Lambda_, Lambda_ * exp_map(Theta_)), 2e-15);
   EXPECT_LT(distance(exp_map(theta_), Lambda_ * exp_map(Theta_) * Lambda_.transpose()), 2e-15);
   EXPECT_LT(distance(hat(theta_), Lambda_ * hat(Theta_) * Lambda_.transpose()), 2e-15);

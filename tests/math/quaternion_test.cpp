@@ -21,7 +21,7 @@ class Quaternion : public testing::TestWithParam<Vec3> {
 INSTANTIATE_TEST_SUITE_P(Vectors, Quaternion, testing::ValuesIn(test::sample_vectors()));
 
 // @tests{ga-cay-as-exp}
-TEST_P(Quaternion, OfACayleyVectorHoldsHalfOfTwiceTheArctangent) {
+TEST_P(Quaternion, OfACayleyVectorIsItsCayleyTransform) {
   const Quat q = quaternion_from_cayley(chi_);
   EXPECT_LT(distance(q.toRotationMatrix(), cay(chi_)), 1e-15);
   EXPECT_NEAR(q.norm(), 1.0, 3e-16);
@@ -43,7 +43,7 @@ TEST_P(Quaternion, MultipliesAsTheRotationsDo) {
   EXPECT_LT(distance(product.toRotationMatrix(), cay(other) * cay(chi_)), 2e-15);
 }
 
-TEST_P(Quaternion, AndItsOppositeAreOneRotation) {
+TEST_P(Quaternion, IsTheSameRotationWithOppositeSign) {
   const Quat q = quaternion_from_rotation_vector(chi_);
   const Quat opposite(-q.w(), -q.x(), -q.y(), -q.z());
   EXPECT_LT(distance(rotation_vector(opposite), chi_), 1e-15);

@@ -59,7 +59,7 @@ class OfABody : public testing::Test {
 
 using GlobalizationOfGrowth = OfABody;
 
-TEST_F(GlobalizationOfGrowth, UndoesALargeIncrementThatGrewAndTakesHalfOfTheNext) {
+TEST_F(GlobalizationOfGrowth, UndoesALargeIncrementThatGrewAndHalvesTheNext) {
   ListedIncrements engine(system_, {0.1, 0.5, 0.4, 0.01});
   Globalization globalization(system_, state_, trial_, engine, true);
   (void)globalization.iterate(0.0, true);
@@ -78,7 +78,7 @@ TEST_F(GlobalizationOfGrowth, UndoesALargeIncrementThatGrewAndTakesHalfOfTheNext
   EXPECT_NEAR(moved(), 0.1 + 0.25 * 0.01, 1e-15);
 }
 
-TEST_F(GlobalizationOfGrowth, AcceptsSmallIncrementsAndThoseOfEnginesWithASearchOfTheirOwn) {
+TEST_F(GlobalizationOfGrowth, AcceptsSmallIncrementsAndEnginesWithTheirOwnSearch) {
   for (const bool undoes : {true, false}) {
     const double last = undoes ? 0.04 : 0.1;
     ListedIncrements engine(system_, {last, 0.5});

@@ -52,7 +52,7 @@ TEST(RankReport, CountsTheSameInLargeSystems) {
   EXPECT_EQ(report.names.size(), 3u * n + 1u);
 }
 
-TEST(RankReport, SeesTheFurtherMotionsOfAFlatFourBar) {
+TEST(RankReport, CountsTheAdditionalMotionsOfAFlatFourBar) {
   // Cranks and couplers in one line: each loop loses a row, and mobility becomes N + 1.
   const System system = four_bars(3, 0.0).system();
   EXPECT_EQ(rank_report(system, system.initial_state()).mobility, 4);
@@ -67,7 +67,7 @@ TEST(RankReport, FindsNothingRedundantInATree) {
   EXPECT_EQ(report.text(), "mobility 21, 21 constraint rows, rank 21, none redundant");
 }
 
-TEST(RankReport, LeavesJointsOutThatHaveNoPartInARedundancy) {
+TEST(RankReport, LeavesOutJointsThatAreNotRedundant) {
   Mechanism m = door_system();
   const int handle = m.body("handle", {1.0, 0.2, 1.0});
   m.joint("spindle", "revolute", 0, handle, {1.0, 0.0, 1.0}, Vec3::UnitY());

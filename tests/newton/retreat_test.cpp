@@ -64,7 +64,7 @@ StepReport one_long_step(const System& system, State& state, double least) {
 }
 
 // The first iterate, by the stiffness at rest, has the top 1.5 m below where it was.
-TEST(Retreat, SavesAStepWhoseFirstIterateTurnsElementsInsideOut) {
+TEST(Retreat, RecoversAStepWhoseFirstIterateInvertsElements) {
   for (const char* element : {"hex8_standard", "hex8_eas9"}) {
     System system;
     press(system, element, kFoam, 1.5);
@@ -80,7 +80,7 @@ TEST(Retreat, SavesAStepWhoseFirstIterateTurnsElementsInsideOut) {
   }
 }
 
-TEST(Retreat, SavesALoadStepToo) {
+TEST(Retreat, RecoversALoadStep) {
   for (const char* element : {"hex8_standard", "hex8_eas9"}) {
     System system;
     press(system, element, kFoam, 1.5);
@@ -92,7 +92,7 @@ TEST(Retreat, SavesALoadStepToo) {
 }
 
 // A pressure above the maximum that the material can carry: there is no solution.
-TEST(Retreat, EndsWithTheWorstElementNamedWhereThereIsNoWay) {
+TEST(Retreat, NamesTheWorstElementIfThereIsNoSolution) {
   System system;
   press(system, "hex8_standard", kLinear, 1.5);
   State state = system.initial_state();
@@ -101,7 +101,7 @@ TEST(Retreat, EndsWithTheWorstElementNamedWhereThereIsNoWay) {
   EXPECT_THAT(report.message, HasSubstr("of 'solids.cube'"));
 }
 
-TEST(IterateSnapshot, RestoresWhatIterationsMoveAndNothingElse) {
+TEST(IterateSnapshot, RestoresOnlyWhatIterationsChange) {
   System system;
   press(system, "hex8_eas9", kFoam, 0.1);
   const State state = system.initial_state();

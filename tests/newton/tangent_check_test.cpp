@@ -73,7 +73,7 @@ System ball_of_one() {
   return system;
 }
 
-TEST(CheckTangents, NamesAWrongInteraction) {
+TEST(CheckTangents, NamesAnInteractionWithAWrongTangent) {
   System system = ball_of_one();
   WrongSpring spring;
   spring.name = "wrong";
@@ -90,7 +90,7 @@ TEST(CheckTangents, NamesAWrongInteraction) {
   EXPECT_GT(part_of(report, "assembled")->worst.error, 0.1);
 }
 
-TEST(CheckTangents, NamesAWrongRowOfAConstraint) {
+TEST(CheckTangents, NamesAConstraintRowWithAWrongTangent) {
   System system = ball_of_one();
   WrongRow guide;
   guide.name = "rail";
@@ -156,7 +156,7 @@ class WrongTruss final : public ElementGroup {
   std::vector<int> nodes_{0, 1};
 };
 
-TEST(CheckTangents, NamesWrongElements) {
+TEST(CheckTangents, NamesElementsWithWrongTangents) {
   System system;
   system.add_node({.position = Vec3::Zero()});
   system.add_node({.position = 1.1 * Vec3::UnitX()});
@@ -203,7 +203,7 @@ TEST(CheckTangents, AgreesForContacts) {
   }
 }
 
-TEST(CheckTangents, SaysThatNoContactActs) {
+TEST(CheckTangents, ReportsThatNoContactActs) {
   Scene s;
   BodyMotion start;
   start.r = {0, 0, 2.0};
@@ -215,7 +215,7 @@ TEST(CheckTangents, SaysThatNoContactActs) {
   EXPECT_TRUE(leaves_out(report, "contacts between bodies: none of the"));
 }
 
-TEST(CheckTangents, SaysThatImpulsesHaveNoTangent) {
+TEST(CheckTangents, ReportsThatImpulsesHaveNoTangent) {
   Scene s;
   BodyMotion start;
   start.r = {0, 0, 0.1};
@@ -262,7 +262,7 @@ class WrongContacts final : public BodyContacts {
   std::vector<Participants> pairs_{{0, 1}};
 };
 
-TEST(CheckTangents, NamesAWrongContact) {
+TEST(CheckTangents, NamesAContactWithAWrongTangent) {
   System system = ball_of_one();
   BodyMotion start;
   start.r = {2.0, 2.0, 3.0};

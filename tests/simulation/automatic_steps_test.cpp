@@ -50,7 +50,7 @@ double bounced(double e, double t) {
 class Stops : public testing::TestWithParam<double> {};
 
 /// Impacts within the stop's band, whose time is uncertain by band over speed: 2e-5 s here.
-TEST_P(Stops, AreLandedOnByTheTolerance) {
+TEST_P(Stops, AreReachedWithinTheTolerance) {
   const double e = GetParam();
   for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
     Simulation s(with(slider_on_stop(e), 2, tolerance));
@@ -128,7 +128,7 @@ analysis: {duration: 3 s}
 }
 
 /// A tolerance below rounding errors: the run finishes with a warning that it was not reached.
-TEST(AutomaticSteps, SayWhenTheyCannotReachATolerance) {
+TEST(AutomaticSteps, ReportAToleranceThatCannotBeReached) {
   const std::string text = R"(
 format: 1
 gravity: [0, 0, -9.81]

@@ -54,7 +54,7 @@ constexpr double kT = 0.5, kPhi = 2.0 * kT * kT, kRate = 4.0 * kT, kPsi = 3.0 * 
 
 // Turns about z, then about the arm's x: Euler angles of zxy and the rest. The velocity's error is
 // of the order of the step squared. @tests{euler-angles}
-TEST(BodyColumns, TellTheRotation) {
+TEST(BodyColumns, ContainTheRotation) {
   std::vector<std::string> header;
   expect_numbers(at_end("rotation: zxy", &header), 10, {kPhi, kPsi, 0.0}, 1e-9);
   EXPECT_EQ(header[10], "euler1z [rad]");
@@ -71,7 +71,7 @@ TEST(BodyColumns, TellTheRotation) {
 }
 
 // ω = (3 cos φ, 3 sin φ, φ̇), its rate, and the same relative to the arm. @tests{relative-motion}
-TEST(BodyColumns, TellAngularMotion) {
+TEST(BodyColumns, ContainTheAngularMotion) {
   const double c = std::cos(kPhi), s = std::sin(kPhi);
   expect_numbers(at_end("angular: true"), 10,
                  {3.0 * c, 3.0 * s, kRate, -3.0 * kRate * s, 3.0 * kRate * c, 4.0}, 1e-6);
@@ -87,7 +87,7 @@ TEST(BodyColumns, TellAngularMotion) {
 // Axis of the disc relative to the arm: the spindle. Relative to the ground: from the disc's
 // rotation and displacement.
 // @tests{helical-rate} @tests{helical-finite}
-TEST(BodyColumns, TellHelicalAxes) {
+TEST(BodyColumns, ContainHelicalAxes) {
   for (const char* which : {"instantaneous", "finite"}) {
     const bool finite = *which == 'f';
     expect_numbers(at_end(std::string("seen_from: arm, helical: ") + which), 10,
@@ -100,7 +100,7 @@ TEST(BodyColumns, TellHelicalAxes) {
   EXPECT_NEAR(row[17], 0.0, 1e-6);
 }
 
-TEST(BodyColumns, TellWhatIsWrong) {
+TEST(BodyColumns, ReportErrors) {
   const auto fault = [](const std::string& probe) -> std::string {
     try {
       (void)read_model_text(text(probe), "columns.yaml");

@@ -60,7 +60,7 @@ TEST(LoadFunctions, SpringAndDamperFollowTheClosedFormAtOrderTwo) {
         {30, 150, 1500, 15000}, 2.0, 0.05);
 }
 
-TEST(LoadFunctions, ThatReadNoVelocityGoWithOrderFour) {
+TEST(LoadFunctions, WithoutVelocityCanBeUsedAtOrderFour) {
   const double w = std::sqrt(kStiffness / kMass);
   expect_order(
       [&](int steps) {
@@ -89,7 +89,7 @@ TEST(LoadFunctions, LinearSpringKeepsItsEnergyAtAnyStep) {
 }
 
 // A spring of the engine and the same one from code, in a joint and between two points.
-TEST(LoadFunctions, InJointsAndBetweenPointsAreTheSpringsOfTheEngine) {
+TEST(LoadFunctions, AgreeWithSpringsOfTheEngine) {
   const std::string text = R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -147,7 +147,7 @@ TEST(LoadFunctions, ContinueBitForBitFromASavedState) {
   EXPECT_EQ(first.state_hash(), second.state_hash());
 }
 
-TEST(LoadFunctions, WhatTheyThrowLeavesTheSimulationWhereItWas) {
+TEST(LoadFunctions, ThatThrowLeaveTheSimulationUnchanged) {
   Model model = free_body("0.01");
   bool fail = false;
   PointFunction f = spring(kStiffness, 0.0);
@@ -188,7 +188,7 @@ output: {hdf5: false}
   EXPECT_NEAR(-100.0 * z - 1e3 * z * z * z, 20.0, 1e-8);
 }
 
-TEST(LoadFunctions, AreRefusedWhereTheyCannotBe) {
+TEST(LoadFunctions, AreRefusedWhereTheyHaveNoMeaning) {
   const auto message = [](Model model) -> std::string {
     try {
       Simulation s(std::move(model));

@@ -47,7 +47,7 @@ Simulation sample() {
   return Simulation(m.model);
 }
 
-TEST(LoadReport, SpringsBeginWithTheLengthOfTheStartAndWithoutForce) {
+TEST(LoadReport, SpringsStartWithTheirInitialLengthAndWithoutForce) {
   const Simulation s = sample();
   const std::vector<double> one = s.load(0);
   ASSERT_EQ(one.size(), 6U);
@@ -73,7 +73,7 @@ TEST(LoadReport, ForcesAddUpToTheAcceleration) {
   EXPECT_NEAR(vector_of(two).norm(), 25.0 * std::abs(two[3] - 1.0), 1e-10);
 }
 
-TEST(LoadReport, ATorsionalSpringTellsTheAngleOfItsJointAndTheMomentAboutItsAxis) {
+TEST(LoadReport, ATorsionalSpringHasTheAngleOfItsJointAndTheAxialMoment) {
   Simulation s = sample();
   while (s.joint(0).coordinates[0] < 7.0) ASSERT_TRUE(s.step(1.0).accepted);
   const std::vector<double> spiral = s.load(3);

@@ -91,7 +91,7 @@ TEST(LoadsInTime, SwitchedForcesBeginWhenTheyAreSwitchedOn) {
                 });
 }
 
-TEST(LoadsInTime, NumericalDampingTakesNothingFromAnImpulse) {
+TEST(LoadsInTime, NumericalDampingDoesNotChangeAnImpulse) {
   for (const double rho_inf : {0.0, 0.3, 0.8})
     for (const double step : {0.0, 0.2, 0.013}) {
       Model m = pushed_ball("\"t > 5.3 && t < 6.4 ? 4 : 0\"", 10.0);
@@ -165,7 +165,7 @@ TEST(LoadsInTime, FastForcesAreSampled) {
 }
 
 /// A bump of a hundredth of a second far from the start: exp(−(τ/w)²) has the impulse √π w.
-TEST(LoadsInTime, SmoothBumpsAreNotJumpedOver) {
+TEST(LoadsInTime, SmoothBumpsAreNotSkipped) {
   for (const int order : {2, 6, 8})
     for (const double tolerance : {1e-3, 1e-6}) {
       Model m = pushed_ball("1000*exp(-((t - 7.1)/0.01)^2)", 10.0);
@@ -190,7 +190,7 @@ TEST(LoadsInTime, FixedStepsReturnToTheirGrid) {
 }
 
 /// Breaks on the grid to rounding, or nearly: they cause no tiny steps.
-TEST(LoadsInTime, BreaksOnTheGridCutNoStep) {
+TEST(LoadsInTime, BreaksOnTheGridCauseNoExtraStep) {
   for (const char* at : {"0.7", "0.7 + 1e-13", "0.7 - 1e-13"}) {
     Model m = pushed_ball(format("\"t > {} ? 4 : 0\"", at), 2.0);
     m.analysis.step = 0.1;
@@ -200,7 +200,7 @@ TEST(LoadsInTime, BreaksOnTheGridCutNoStep) {
   }
 }
 
-TEST(LoadsInTime, RunsThatAreContinuedAreTheSame) {
+TEST(LoadsInTime, ContinuedRunsAreTheSame) {
   for (const int order : {2, 6}) {
     Model m = pushed_ball("\"sin(7*t) > 0.3 ? 4*cos(3*t) : t\"", 3.0);
     m.analysis.order = order;

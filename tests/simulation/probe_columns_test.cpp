@@ -54,7 +54,7 @@ output:
     c: {controller: c}
 )";
 
-TEST(ProbeColumns, AreAsManyAsTheNumbersAndHaveNamesOfTheirOwnAndUnits) {
+TEST(ProbeColumns, HaveOneUniqueNameAndUnitForEachNumber) {
   Simulation s = made(kAll);
   (void)finished(s);
   for (const ProbeSpec& probe : s.model().output.probes) {
@@ -71,7 +71,7 @@ TEST(ProbeColumns, AreAsManyAsTheNumbersAndHaveNamesOfTheirOwnAndUnits) {
 }
 
 // Probes, events and controllers read the same number.
-TEST(ProbeColumns, AreWhatChannelsRead) {
+TEST(ProbeColumns, AreTheNumbersThatChannelsRead) {
   Simulation s = made(kAll);
   (void)finished(s);
   SystemMap map;

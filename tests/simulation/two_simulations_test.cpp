@@ -76,7 +76,7 @@ TEST(TwoSimulations, InThreadsAreAsIfAlone) {
   EXPECT_EQ(found, expected);
 }
 
-TEST(SimulationByName, FindsWhatTheModelNames) {
+TEST(SimulationByName, FindsNamedObjectsOfTheModel) {
   Simulation s(swing(2));
   s.step(0.05);
   EXPECT_EQ(s.body("hub").r, s.body(0).r);

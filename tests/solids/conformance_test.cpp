@@ -107,7 +107,7 @@ TEST_P(EveryElement, HasTheTangentOfItsForces) {
 }
 
 // @tests{solid-enhanced-gradient} @tests{solid-mean-dilatation} @tests{solid-viscosity}
-TEST_P(EveryElement, GivesToItsNodesWhatItLoses) {
+TEST_P(EveryElement, DoesWorkEqualToItsLossOfEnergy) {
   if (GetParam().stress == Stress::kMidpoint || GetParam().rho_inf != 1.0)
     GTEST_SKIP() << "holds at rho_inf = 1 with conserving stress";
   with_each_material([](Example& s) {
@@ -171,7 +171,7 @@ TEST_P(EveryElement, ComputesTheSameWithEveryInstructionSet) {
   });
 }
 
-TEST_P(EveryElement, TurnsWithTheWorldAlsoWhenItsCondensationIsOld) {
+TEST_P(EveryElement, IsObjectiveAlsoWithOldCondensedModes) {
   with_each_material([](Example& s) {
     s.step.evaluate(*s.group);
     SolidStep turned = s.step;
@@ -271,7 +271,7 @@ TEST_P(EveryElementKind, HasTheMassOfItsVolumeAndThatOfRigidMotion) {
   EXPECT_NEAR(group_->volume(), mass / 1100.0, 2e-3 * group_->volume());
 }
 
-TEST_P(EveryElementKind, ShowsAnEvenStateAsItIs) {
+TEST_P(EveryElementKind, ReportsAHomogeneousStateExactly) {
   SolidStep step(X_, context_of(1.0));
   step.begin(*group_);
   Mat3 F;

@@ -49,7 +49,7 @@ TEST(NodalFields, OfLinearHexahedraAreMeansByVolume) {
 // A tension σ has the energy σ²/(2 E) per volume, with 1/E = 1/(3 G) + 1/(9 K). Differences that
 // grow along x from 0 to 4 and fall from 2 to 0: a third of their squares, in volumes 1 and 2.
 // @tests{stress-error-energy}
-TEST(NodalFields, KnowTheEnergyOfTheStressAndOfTheJumps) {
+TEST(NodalFields, HaveTheEnergyOfTheStressAndOfItsJumps) {
   const Mesh mesh = two_cubes();
   std::vector<ElementSample> elements(2);
   elements[0].volume = 1.0;

@@ -75,7 +75,7 @@ class Patch : public testing::TestWithParam<std::string> {};
 
 // The boundary of a distorted block has a homogeneous large strain: the interior has the same
 // strain at every point.
-TEST_P(Patch, IsStrainedEvenlyWhenItsBoundaryIs) {
+TEST_P(Patch, IsStrainedHomogeneouslyIfItsBoundaryIs) {
   const ElementKind& kind = element_kind(GetParam());
   for (const MaterialDescription& d : example_materials()) {
     if (!suits(kind, d)) continue;
@@ -170,7 +170,7 @@ double cantilever(const std::string& element, int along, int across, double slen
 }
 
 // Hexahedra with two nodes per edge, against an independent program to its three digits.
-TEST(Cantilever, IsAsStiffAsItsElementsAreKnownToBe) {
+TEST(Cantilever, HasThePublishedStiffnessOfItsElements) {
   EXPECT_NEAR(cantilever("hex8_standard", 5, 1, 10.0), 0.367, 1e-3);
   EXPECT_NEAR(cantilever("hex8_standard", 10, 1, 10.0), 0.643, 1e-3);
   EXPECT_NEAR(cantilever("hex8_standard", 10, 1, 100.0), 0.025, 1e-3);
@@ -185,7 +185,7 @@ TEST(Cantilever, IsAsStiffAsItsElementsAreKnownToBe) {
 
 // Quadratic elements are within the thickness of the clamp, where Poisson's contraction is held:
 // about ν² (h/L) and less than 3 %.
-TEST(Cantilever, BendsAsItShouldWithQuadraticElements) {
+TEST(Cantilever, BendsByTheClosedFormWithQuadraticElements) {
   for (const char* element : {"hex20", "hex27", "tet10"})
     EXPECT_NEAR(cantilever(element, 10, 1, 10.0), 0.985, 0.015) << element;
   EXPECT_LT(cantilever("tet4", 10, 1, 10.0), 0.4);

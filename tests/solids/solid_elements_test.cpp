@@ -58,7 +58,7 @@ TEST(SolidElements, NameTheElementThatIsInvertedOrFlat) {
   EXPECT_THAT(make(d), refused("element 0"));
 }
 
-TEST(SolidElements, RefuseWhatMakesNoSolid) {
+TEST(SolidElements, RefuseInvalidDescriptions) {
   auto d = cube();
   d.density = 0.0;
   EXPECT_THAT(make(d), refused("density is 0"));
@@ -97,7 +97,7 @@ TEST(SolidElements, AreChosenByCellsAndMaterial) {
               refused("Did you mean 'hex8_eas9'?"));
 }
 
-TEST(SolidElements, TellWhenAnEnhancedElementIsCompressedTooFar) {
+TEST(SolidElements, ReportAnEnhancedElementThatIsCompressedTooFar) {
   const auto group = make_solid_elements(cube("hex8_eas9"));
   SolidStep step(cell_shape("hex8").nodes, context_of(1.0));
   step.begin(*group);
@@ -114,7 +114,7 @@ TEST(SolidElements, TellWhenAnEnhancedElementIsCompressedTooFar) {
               AllOf(HasSubstr("element 0"), HasSubstr("0.65"), HasSubstr("0.7")));
 }
 
-TEST(SolidElements, SayWhichElementCollapses) {
+TEST(SolidElements, NameTheElementThatCollapses) {
   const auto group = make_solid_elements(cube());
   SolidStep step(cell_shape("hex8").nodes, context_of(1.0));
   step.begin(*group);

@@ -58,7 +58,7 @@ TEST(CloudFit, IsExactForQuadraticsWhereTwoCellsMeetInEveryDirection) {
 }
 
 // A lattice of points is rotated as a whole: complete polynomials do not depend on axes.
-TEST(CloudFit, IsExactForQuadraticsOfManyPointsHoweverTheyAreTurned) {
+TEST(CloudFit, IsExactForQuadraticsOfManyPointsInAnyOrientation) {
   const Mat3 turn = (Mat3() << 0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6).finished();
   const auto field = [](const Vec3& X) {
     return 1.0 + X[0] * X[1] - 2.0 * X[1] * X[1] + X[0] * X[2] + X[2];
@@ -93,7 +93,7 @@ TEST(CloudFit, IsExactForProductsOfSquaresAlongDirections) {
 }
 
 // The points of one cell cannot distinguish a square from a constant: such terms are omitted.
-TEST(CloudFit, LeavesOutWhatThePointsDoNotTell) {
+TEST(CloudFit, LeavesOutTermsThatThePointsDoNotDetermine) {
   for (const Mat3& shape : kShapes) {
     const Mat3 back = shape.inverse();
     const auto product = [&](const Vec3& X) {  // bending
@@ -156,7 +156,7 @@ double largest_error(const char* cell, double n) {
   return worst;
 }
 
-TEST(StressPatches, ReachTheBoundaryWithThirdOrder) {
+TEST(StressPatches, AreOfAboutThirdOrderUpToTheBoundary) {
   for (const char* cell : {"hex20", "hex27"}) {
     const double two = largest_error(cell, 2), four = largest_error(cell, 4),
                  eight = largest_error(cell, 8);
@@ -166,7 +166,7 @@ TEST(StressPatches, ReachTheBoundaryWithThirdOrder) {
   }
 }
 
-TEST(StressPatches, AreForQuadraticCellsAndTet4) {
+TEST(StressPatches, SuitQuadraticCellsAndTet4) {
   for (const char* cell : {"hex20", "hex27", "tet4", "tet10", "hex8", "wedge6"}) {
     const Mesh mesh = make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, cell);
     EXPECT_EQ(StressPatches::suit(mesh),

@@ -55,7 +55,7 @@ TEST(Statics, ARodOnATorsionalSpringFindsTheAngleOfItsTranscendentalEquation) {
               1e-8);  // the hinge carries the weight
 }
 
-TEST(Statics, APendulumLiftedFromNoStiffnessHangs) {
+TEST(Statics, APendulumWithoutInitialStiffnessFindsItsEquilibrium) {
   System system;
   system.set_gravity({0, -9.81, 0});
   const int bob = add_body(system, "bob", 1.0, {0, -1, 0});
@@ -80,7 +80,7 @@ TEST(Statics, AnInvertedPendulumIsFoundUnstable) {
   EXPECT_EQ(report.unstable, 1);
 }
 
-TEST(Statics, ABodyThatNothingHoldsIsNamed) {
+TEST(Statics, AnUnsupportedBodyIsNamed) {
   System system;
   system.set_gravity({0, 0, -9.81});
   add_body(system, "stone", 1.0, Vec3::Zero());

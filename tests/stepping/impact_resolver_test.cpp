@@ -7,7 +7,7 @@
 #include "contact/scene.hpp"
 #include "support/random_steps.hpp"
 
-namespace polhode::settle_impacts_tests {
+namespace polhode::impact_resolver_tests {
 namespace {
 
 using namespace test;
@@ -114,7 +114,7 @@ struct Tumbling {
 };
 
 // @tests{turn-law} @tests{impact-friction} @tests{solid-impulse}
-TEST(ImpactResolver, OfBodiesWithSolidsKeepMomentaAndTakeTheEnergyTheySay) {
+TEST(ImpactResolver, KeepsMomentaAndReportsEnergyLossesWithSolids) {
   for (const bool joint : {false, true})
     for (const auto& [part, mu] : {std::pair(0.0, 0.0), {0.5, 0.0}, {0.9, 0.0}, {0.5, 0.2}}) {
       Tumbling t(joint);
@@ -171,7 +171,7 @@ TEST(ImpactResolver, OfBodiesWithSolidsKeepMomentaAndTakeTheEnergyTheySay) {
 
 /// A body with a solid whose nodes are all bonded to it: it is rigid, with the mass and inertia of
 /// both.
-TEST(ImpactResolver, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
+TEST(ImpactResolver, TreatsAFullyBondedSolidAsARigidBody) {
   Scene s(Vec3::Zero());
   const int a = s.add_box("a", {0.4, 0.3, 0.2}, 1.0, at({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}));
   const double mass = s.add_bar(a, {.from = {0.2, 0.0, 0.0}, .cells = {1, 1, 1}, .far = a});
@@ -195,7 +195,7 @@ TEST(ImpactResolver, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
 
 /// A body that falls without rebound on a stack at rest: all are at rest afterwards, and the
 /// impulse is transmitted to the ground. @tests{impact-carried}
-TEST(ImpactResolver, AreCarriedOnByWhatRests) {
+TEST(ImpactResolver, TransmitsImpulsesThroughBodiesAtRest) {
   constexpr int kStack = 4;
   constexpr double kFall = -2.0, kMass = 3.0;
   Scene s(Vec3::Zero());
@@ -232,4 +232,4 @@ TEST(ImpactResolver, AreCarriedOnByWhatRests) {
 }
 
 }  // namespace
-}  // namespace polhode::settle_impacts_tests
+}  // namespace polhode::impact_resolver_tests

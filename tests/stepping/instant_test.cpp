@@ -108,7 +108,7 @@ TEST(ProjectVelocities, KeepsTheMomentumAboutAHinge) {
 
 /// A hinge that hardly moves beside a fast body: the violation of its rows is small relative to the
 /// speeds of the model, not to those of the hinge.
-TEST(ProjectVelocities, TellsTheLargestSpeedOfAnyBody) {
+TEST(ProjectVelocities, ReportsTheLargestSpeedOfAnyBody) {
   Mechanism m;
   const int door = m.body("door", {0, 0, 0}, 2.0, {0.1, 0.2, 0.2});
   const int fast = m.body("fast", {5, 0, 0}, 1.0, {0.1, 0.1, 0.1});
@@ -156,7 +156,7 @@ TEST(InstantSolution, MatchesThePhysicalPendulum) {
   EXPECT_LT((Vec3(s.lambda[0], s.lambda[1], s.lambda[2]) - hinge).norm(), 1e-12);
 }
 
-TEST(InstantSolution, SharesTheLoadOfADoorEvenly) {
+TEST(InstantSolution, DistributesTheLoadOfADoorEvenly) {
   const System system = door_system().system();
   const InstantSolution s = instant_solution(system, system.initial_state());
   EXPECT_TRUE(s.solved && s.consistent);
@@ -176,7 +176,7 @@ TEST(InstantSolution, WorksInASingularPosition) {
   for (double l : s.lambda) EXPECT_LT(std::abs(l), 1e3);
 }
 
-TEST(InstantSolution, SaysWhenVelocitiesFitNoMotionOfASingularPosition) {
+TEST(InstantSolution, ReportsVelocitiesThatFitNoMotionOfASingularPosition) {
   // A flat triangle of two bars whose far end is held: the middle may move across to first order,
   // but not to second order, because the bars would stretch: γ ≠ 0 where G has lost a row.
   Mechanism m;

@@ -57,7 +57,7 @@ SingleImpactEnd by_increments(const SingleImpact& law, double increment) {
 }
 
 // @tests{routh}
-TEST(SingleImpact, IsNewtonsAndCoulombsOfASphere) {
+TEST(SingleImpact, FollowsNewtonAndCoulombForASphere) {
   Mat3 K = Mat3::Zero();
   K.diagonal() << 1.0, 3.5, 3.5;
   for (const double e : {0.0, 0.3, 0.7, 1.0})
@@ -77,7 +77,7 @@ TEST(SingleImpact, IsNewtonsAndCoulombsOfASphere) {
 /// of the first slip, the end of compression and that of restitution, whose order decides.
 /// (Y. Wang and M. T. Mason, J. Appl. Mech. 59 (1992) 635-642.)
 // @tests{routh}
-TEST(SingleImpact, FollowsSlipThatStopsSticksOrTurnsRound) {
+TEST(SingleImpact, FollowsSlipThatStopsSticksOrReverses) {
   int sticks = 0, turns = 0, slides = 0;
   for (const double angle : {0.3, 0.6, 0.9, 1.2, 1.9, 2.3})
     for (const double mu : {0.05, 0.2, 0.5, 0.9})
@@ -152,7 +152,7 @@ TEST(SingleImpact, FollowsSlipAlongItsCurveInSpace) {
 
 /// A slip that ends and resumes in the plane, with round-off across it: the search for its
 /// direction starts in the plane and ends there.
-TEST(SingleImpact, ResumesSlipWhateverRoundOffIsAcross) {
+TEST(SingleImpact, ResumesSlipInThePlaneDespiteRoundOff) {
   SingleImpact s;
   s.mu = s.mu_across = 0.5;
   s.restitution = 0.3;
@@ -186,7 +186,7 @@ TEST(SingleImpact, FollowsSlowSlip) {
 /// An impact in parts equals the whole one: e² of the energy stored at the end of compression is
 /// returned.
 // @tests{routh}
-TEST(SingleImpact, GoesOnFromWhatIsStored) {
+TEST(SingleImpact, ContinuesFromStoredEnergy) {
   Mat3 K = Mat3::Zero();
   K.diagonal() << 0.5, 2.0, 2.0;
   const double w = 2.0, e = 0.6, whole = 0.5 * w * w / 0.5;

@@ -17,7 +17,7 @@ using namespace test;
 
 GeneralizedAlpha ga(double rho) { return GeneralizedAlpha::from_spectral_radius(rho); }
 
-TEST(Start, MakesAStateConsistentAndSaysWhatItDid) {
+TEST(Start, MakesAStateConsistentAndReportsChanges) {
   Mechanism m = double_pendulum();
   m.model.bodies[1].position += Vec3(0.01, 0.02, 0.0);  // joints were placed before
   const System system = m.system();
@@ -140,7 +140,7 @@ TEST(StartSmoothMultipliers, RemovesTheAlternatingPartAtRhoOne) {
   EXPECT_LT(change, 1e-6);  // O(Δt⁴) of some joules
 }
 
-TEST(Start, InAFlatFourBarGoesOnAlongItsBranch) {
+TEST(Start, KeepsTheBranchOfAFlatFourBar) {
   const System system = four_bars(1, 0.0).system();
   State state = system.initial_state();
   const StartReport report = start(system, state, ga(1.0), 0.01);

@@ -32,7 +32,7 @@ const CertifiedQuantity& quantity(const Certificate& c, const std::string& name)
   throw std::runtime_error("no quantity " + name);
 }
 
-TEST(Certify, HalvesTheStepTwiceAndSeesTheOrder) {
+TEST(Certify, HalvesTheStepTwiceAndFindsTheOrder) {
   const Certificate c =
       certify(swing("duration: 2 s, step: 10 ms",
                     "output: {probes: {tip: {body: bar, point: [0.5, 0, 0]}, A: {joint: A}}}\n"));
@@ -59,7 +59,7 @@ TEST(Certify, HalvesTheStepTwiceAndSeesTheOrder) {
   EXPECT_TRUE(quantity(c, "A mx my mz").report.noise);
 }
 
-TEST(Certify, OfAFreeFlightIsRounding) {
+TEST(Certify, FindsOnlyRoundingErrorsInFreeFlight) {
   const Certificate c = certify(read_model_text(
       "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
       "  stone: {mass: 1, inertia: [1, 1, 1], velocity: [3, 0, 4]}\n"
@@ -88,7 +88,7 @@ TEST(Certify, RefinesTheToleranceOfAutomaticSteps) {
 }
 
 // The motion of a chaotic triple pendulum: two runs diverge within seconds.
-TEST(Certify, SaysFromWhenOnChaosLeavesNothing) {
+TEST(Certify, ReportsWhenChaosEndsConvergence) {
   Model model = read_model_text(
       "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
       "  a: {mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]}\n"
@@ -157,7 +157,7 @@ TEST(Certify, ComparesMovingBodiesOfAModelWithoutProbes) {
   EXPECT_THAT(certify(row).notes, ElementsAre(HasSubstr("the first 20 of 30 moving bodies")));
 }
 
-TEST(Certify, RefusesWhatTakesNoSteps) {
+TEST(Certify, RefusesAnalysesWithoutTimeSteps) {
   const auto message = [](const Model& model) -> std::string {
     try {
       (void)certify(model);
@@ -179,7 +179,7 @@ TEST(Certify, RefusesWhatTakesNoSteps) {
   EXPECT_THAT(message(model), HasSubstr("output.probes: are missing"));
 }
 
-TEST(Certify, EndsWhenItIsToldTo) {
+TEST(Certify, StopsOnRequest) {
   std::atomic<bool> stop{false};
   CertifyHooks hooks;
   hooks.stop = &stop;
@@ -191,7 +191,7 @@ TEST(Certify, EndsWhenItIsToldTo) {
   EXPECT_TRUE(c.quantities.empty());
 }
 
-TEST(Certify, TellsOfARunThatDoesNotConverge) {
+TEST(Certify, ReportsARunThatDoesNotConverge) {
   Model model = swing("duration: 1 s, step: 10 ms");
   model.analysis.max_iterations = 1;
   model.analysis.min_step = 2e-3;
@@ -201,7 +201,7 @@ TEST(Certify, TellsOfARunThatDoesNotConverge) {
   EXPECT_FALSE(c.runs[0].summary.message.empty());
 }
 
-TEST(CertificatePicture, IsAWholePictureOfEveryQuantity) {
+TEST(CertificatePicture, ShowsEveryQuantity) {
   const Certificate c = certify(swing("duration: 1 s, step: 10 ms"));
   const std::string svg = certificate_svg(c);
   EXPECT_THAT(svg, testing::StartsWith("<svg xmlns="));

@@ -49,7 +49,7 @@ RefinementRule rule_of(const std::array<double, 3>& h, std::vector<double> order
 }
 
 // @tests{certify-order}
-TEST(ObservedOrder, IsThatOfThePowerWhateverTheSteps) {
+TEST(ObservedOrder, IsThatOfAPowerLawAtAnySteps) {
   for (const std::array<double, 3>& h :
        {kHalves, std::array{1.0, 0.1, 0.01}, std::array{1.0, 0.7, 0.6}, std::array{1.0, 0.9, 0.3}})
     for (const double p : {-1.0, 0.3, 1.0, 2.0, 4.0, 6.0, 8.0}) {
@@ -61,7 +61,7 @@ TEST(ObservedOrder, IsThatOfThePowerWhateverTheSteps) {
 }
 
 // @tests{certify-bar}
-TEST(EstimateError, HasABarThatHoldsTheErrorAndIsHardlyWider) {
+TEST(EstimateError, HasATightBarThatContainsTheError) {
   for (const double order : {1.0, 2.0, 4.0}) {
     const RefinedSeries s = circle(kHalves, order);
     const ConvergenceReport r = estimate_error(s, rule_of(kHalves, {order}));
@@ -88,7 +88,7 @@ TEST(EstimateError, HasABarThatHoldsTheErrorAndIsHardlyWider) {
 }
 
 // @tests{certify-extrapolated}
-TEST(EstimateError, ExtrapolatesToWhatIsFarNearer) {
+TEST(EstimateError, ExtrapolatesToAMuchCloserValue) {
   const RefinedSeries s = circle(kHalves, 2.0);
   const ConvergenceReport r = estimate_error(s, rule_of(kHalves, {2.0}));
   for (std::size_t i = 1; i < s.t.size(); ++i)
@@ -108,7 +108,7 @@ TEST(EstimateError, IsWiderWhereTheOrderIsNotTheExpectedOne) {
   }
 }
 
-TEST(EstimateError, TakesUnevenRefinementsAsTheyAre) {
+TEST(EstimateError, HandlesUnequalRefinements) {
   const std::array<double, 3> h = {0.1, 0.07, 0.052};
   const RefinedSeries s = circle(h, 4.0);
   const ConvergenceReport r = estimate_error(s, rule_of(h, {4.0}));
@@ -119,7 +119,7 @@ TEST(EstimateError, TakesUnevenRefinementsAsTheyAre) {
 // Differences that grow as in chaos, each until it is as large as the motion: those of the middle
 // and the fine run are at t = ln(1/(C h²))/λ, with h the middle step.
 // @tests{certify-lost}
-TEST(EstimateError, SaysFromWhenOnNothingConverges) {
+TEST(EstimateError, ReportsWhenConvergenceIsLost) {
   const double rate = 2.0, C = 1e-4;
   const auto chaos = [&](double t, double h) -> Eigen::Vector2d {
     const double size = C * h * h * std::exp(rate * t), share = size / (1.0 + size);
@@ -143,7 +143,7 @@ TEST(EstimateError, SaysFromWhenOnNothingConverges) {
   EXPECT_TRUE(std::isfinite(r.largest_bar));
 }
 
-TEST(EstimateError, DoesNotAskRoundingToFall) {
+TEST(EstimateError, AllowsRoundingErrorsThatDoNotDecrease) {
   const RefinedSeries s = series(kHalves, 200, 1.0, [](double t, double h) {
     const double noise = 1e-14 * std::sin(1e5 * t / h);
     return Eigen::Vector2d(1.0 + noise, 2.0);
@@ -156,7 +156,7 @@ TEST(EstimateError, DoesNotAskRoundingToFall) {
   EXPECT_LE(r.largest_bar, 1e-13);
 }
 
-TEST(EstimateError, BelievesNothingOfRunsWithTheSameSteps) {
+TEST(EstimateError, RejectsRunsWithNearlyEqualSteps) {
   const std::array<double, 3> h = {0.1, 0.099, 0.098};
   const RefinedSeries s = circle({0.1, 0.08, 0.079}, 2.0);
   const ConvergenceReport r = estimate_error(s, rule_of(h, {2.0}));
@@ -166,7 +166,7 @@ TEST(EstimateError, BelievesNothingOfRunsWithTheSameSteps) {
 
 // A speed that jumps at 3 s + 2 h: certain except near the jump, where the error bar is as large as
 // the jump.
-TEST(EstimateError, IsOfOrderOneAboutAJumpAndSureElsewhere) {
+TEST(EstimateError, IsOfOrderOneNearAJumpAndPreciseElsewhere) {
   const RefinedSeries s = series(kHalves, 1000, 10.0, [](double t, double h) {
     return Eigen::Vector2d(t < 3.0 + 2.0 * h ? 1.0 : -0.5, 0.0);
   });
@@ -182,7 +182,7 @@ TEST(EstimateError, IsOfOrderOneAboutAJumpAndSureElsewhere) {
   }
 }
 
-TEST(EstimateError, PassesOverValuesThatDoNotExist) {
+TEST(EstimateError, SkipsValuesThatDoNotExist) {
   RefinedSeries s = circle(kHalves, 2.0);
   for (Mat& values : s.values) values.topRows(100).setConstant(std::nan(""));
   const ConvergenceReport r = estimate_error(s, rule_of(kHalves, {2.0}));
@@ -191,7 +191,7 @@ TEST(EstimateError, PassesOverValuesThatDoNotExist) {
   EXPECT_GE(r.bar[300], circle_error(s, s.values[2], 300));
 }
 
-TEST(EstimateError, RefusesRunsThatDoNotFit) {
+TEST(EstimateError, RefusesRunsOfDifferentSizes) {
   RefinedSeries s = circle(kHalves, 2.0);
   s.values[1].conservativeResize(10, 2);
   EXPECT_THROW((void)estimate_error(s, rule_of(kHalves, {2.0})), std::invalid_argument);

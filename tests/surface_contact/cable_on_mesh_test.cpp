@@ -103,7 +103,7 @@ TEST(CableOnMesh, HasTheTangentOfItsForces) {
 }
 
 // @tests{cable-on-mesh} @tests{cable-mesh-friction}
-TEST(CableOnMesh, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
+TEST(CableOnMesh, BalancesWorkAndEnergyAndKeepsMomenta) {
   int valleys = 0;
   for (const Place& place : kPlaces)
     for (const double way : {0.02, 0.1, 0.3})

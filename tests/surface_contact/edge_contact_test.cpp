@@ -93,7 +93,7 @@ Vec forces(const EdgeContact& contact, const Scene& s, const std::vector<double>
 }
 
 /// Stored energy at any crossing point, at a node of either line or between nodes: it is the same.
-TEST(EdgeContact, HasNoNotchesAlongALine) {
+TEST(EdgeContact, HasTheSameEnergyAlongALine) {
   double first = 0.0;
   for (const double x : {0.1, 0.2, 0.4999, 0.5, 0.5001, 0.503, 0.6, -0.5}) {
     const Scene s = scene(x, 0.0, 0.0);
@@ -105,7 +105,7 @@ TEST(EdgeContact, HasNoNotchesAlongALine) {
   EXPECT_NEAR(first, 0.7 * scene(0, 0, 0).contact(0.0).law().normal.energy(0.0), 1e-12);
 }
 
-TEST(EdgeContact, LeavesWhatLiesAlongEachOtherToPoints) {
+TEST(EdgeContact, LeavesParallelEdgesToPointContact) {
   Scene s;
   s.first = line(s, {{0, 0, 0}, {1, 0, 0}});
   s.second = line(s, {{0.2, 0, 0.1}, {1.2, 0.03, 0.1}});
@@ -142,7 +142,7 @@ TEST(EdgeContact, HasTheTangentOfItsForces) {
 }
 
 /// Several steps in sequence, each with the history of the last one.
-TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
+TEST(EdgeContact, BalancesWorkAndEnergyAndKeepsMomenta) {
   for (const double mu : {0.0, 0.1, 10.0})
     for (const unsigned seed : {1U, 2U, 3U, 4U}) {
       SCOPED_TRACE(testing::Message() << mu << " " << seed);
@@ -189,7 +189,7 @@ TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
     }
 }
 
-TEST(EdgeContact, FollowsAWayThatWouldCross) {
+TEST(EdgeContact, LimitsADisplacementThatWouldCross) {
   Scene s = scene(0.2, 0.0, 0.0);
   const EdgeContact contact = s.contact(0.0);
   const std::vector<double> history = history_of(contact);
@@ -202,7 +202,7 @@ TEST(EdgeContact, FollowsAWayThatWouldCross) {
   EXPECT_EQ(contact.free_part(s.instant(true), to.instant(true), history.data()), 1.0);
 }
 
-TEST(EdgeContact, OfOneLineMeetsWhatIsNotItsNeighbour) {
+TEST(EdgeContact, OfOneLineLeavesOutNeighbours) {
   Scene s;  // a loop that crosses itself
   s.first = line(s, {{-1, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0.5}, {0, -1, 0.5}});
   for (const Vec3& X : s.X) {
@@ -218,7 +218,7 @@ TEST(EdgeContact, OfOneLineMeetsWhatIsNotItsNeighbour) {
               0.7 * contact.law().normal.energy(0.0), 1e-12);
 }
 
-TEST(EdgeLines, AreTheSharpOnesOfACubeAndTheBorderOfAPlate) {
+TEST(EdgeLines, AreSharpEdgesOfACubeAndTheBorderOfAPlate) {
   std::vector<Vec3> X;
   for (int k = 0; k < 8; ++k) X.emplace_back(k & 1, (k >> 1) & 1, k >> 2);
   const MeshSurface cube = triangulated(

@@ -127,7 +127,7 @@ TEST(EdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
 }
 
 // @tests{edge-friction}
-TEST(EdgePair, RubsWithoutSumOrMomentAndTakesTheEnergyOfItsSlide) {
+TEST(EdgePair, HasFrictionWithoutResultantThatDissipatesItsWork) {
   for (const Place place : {Place::crossing, Place::end_over_edge, Place::ends})
     for (const double mu : {0.05, 50.0})
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
@@ -163,7 +163,7 @@ TEST(EdgePair, RubsWithoutSumOrMomentAndTakesTheEnergyOfItsSlide) {
       }
 }
 
-TEST(EdgePair, DoesNotSlideWhenItTurnsAsAWhole) {
+TEST(EdgePair, DoesNotSlipInRigidRotations) {
   Scene s = scene(Place::crossing, 3, 0.0);
   const Quat half = quaternion_from_rotation_vector(Vec3(2e-4, -1e-4, 3e-4));
   Vec3 middle[4];

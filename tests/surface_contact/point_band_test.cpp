@@ -10,7 +10,7 @@ namespace polhode::test::point_band_tests {
 namespace {
 
 // @tests{surface-start}
-TEST(PointBand, BeginsToPressWhereAPointStarts) {
+TEST(PointBand, BeginsAtTheInitialGapOfAPoint) {
   SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
@@ -29,7 +29,7 @@ TEST(PointBand, BeginsToPressWhereAPointStarts) {
 }
 
 // @tests{surface-start}
-TEST(PointBand, OfAMeshEndsWhereItStarts) {
+TEST(PointBand, OfAMeshEndsAtTheInitialGap) {
   SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
@@ -43,7 +43,7 @@ TEST(PointBand, OfAMeshEndsWhereItStarts) {
   }
 }
 
-TEST(PointBand, KeepsItsBandForWhatStartsElsewhere) {
+TEST(PointBand, IsUnchangedForPointsThatStartOutsideIt) {
   SurfaceLaw law;
   EXPECT_EQ(lowered_for(law, law.normal.reach()), 0.0);
   EXPECT_EQ(lowered_for(law, std::numeric_limits<double>::infinity()), 0.0);
@@ -55,7 +55,7 @@ TEST(PointBand, KeepsItsBandForWhatStartsElsewhere) {
 }
 
 // @tests{surface-turn}
-TEST(PointBand, KeepsThePartOfItsEnergyThatAReboundNeeds) {
+TEST(PointBand, KeepsTheEnergyOfTheRebound) {
   SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
@@ -75,7 +75,7 @@ TEST(PointBand, KeepsThePartOfItsEnergyThatAReboundNeeds) {
 }
 
 // @tests{surface-held}
-TEST(PointBand, PressesBackAfterItsTurnByWhatHoldsIt) {
+TEST(PointBand, BalancesTheLoadOnItAfterCompression) {
   SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
@@ -92,7 +92,7 @@ TEST(PointBand, PressesBackAfterItsTurnByWhatHoldsIt) {
     }
 }
 
-TEST(PointBand, BeginsAnImpactOnlyWhereItClosesFromOutside) {
+TEST(PointBand, BeginsAnImpactOnlyIfItClosesFromOutside) {
   SurfaceLaw law;
   law.mu = law.end_share = 0.5;  // no rebound
   const double reach = law.normal.reach();

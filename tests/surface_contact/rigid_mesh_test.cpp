@@ -76,7 +76,7 @@ TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
 }
 
 /// Gap of a box of triangles: that of the box, at its faces, edges and corners.
-TEST(RigidMesh, IsTheBoxWhoseTrianglesItHas) {
+TEST(RigidMesh, AgreesWithTheBoxOfItsTriangles) {
   using enum RigidSurface::Kind;
   const double rho = 0.2;
   const RigidSurface plain{.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = rho};
@@ -108,7 +108,7 @@ TEST(RigidMesh, IsTheBoxWhoseTrianglesItHas) {
 
 /// A drum of triangles converges to a cylinder with the square of the angle between its sides, for
 /// any radius of the ball.
-TEST(RigidMesh, BecomesTheCylinderOfSecondOrder) {
+TEST(RigidMesh, ConvergesToACylinderWithSecondOrder) {
   const contact::NormalLaw law = band(0.05);
   for (const double radius : {0.0, 0.3, 2.0}) {
     double coarse = 0.0;
@@ -132,13 +132,13 @@ TEST(RigidMesh, BecomesTheCylinderOfSecondOrder) {
 
 /// Points within the band over a rough surface, many of them near several features.
 template <class What>
-void for_points(const RigidMesh& mesh, const GapQuery& question, What&& what) {
-  const contact::NormalLaw& law = question.law;
+void for_points(const RigidMesh& mesh, const GapQuery& query, What&& what) {
+  const contact::NormalLaw& law = query.law;
   Random random(23);
   int found = 0;
   for (int k = 0; k < 40000 && found < 300; ++k) {
-    const Vec3 y = random.vector(4.0).cwiseProduct(Vec3(1.0, 1.0, 0.4 + 0.2 * question.radius));
-    const double d = mesh.distance(y, 4.0, true) - question.radius;
+    const Vec3 y = random.vector(4.0).cwiseProduct(Vec3(1.0, 1.0, 0.4 + 0.2 * query.radius));
+    const double d = mesh.distance(y, 4.0, true) - query.radius;
     if (d < -0.9 * law.tolerance || d > law.tolerance) continue;
     ++found;
     what(y);
@@ -150,17 +150,17 @@ void for_points(const RigidMesh& mesh, const GapQuery& question, What&& what) {
 TEST(RigidMesh, HasTheDerivativesOfItsGap) {
   const contact::NormalLaw law = band(0.2);
   for (const double radius : {0.0, 0.9}) {
-    const GapQuery question{law, 100.0, false, radius};
+    const GapQuery query{law, 100.0, false, radius};
     for (const RigidMesh& mesh : {RigidMesh(hills(0.2)), ring(0.2)}) {
       double several = 0.0;
-      for_points(mesh, question, [&](const Vec3& y) {
-        const SurfaceGap g = mesh.gap(y, question);
+      for_points(mesh, query, [&](const Vec3& y) {
+        const SurfaceGap g = mesh.gap(y, query);
         several = std::max(several, mesh.distance(y, 4.0, false) - radius - g.value);
         const auto value = [&](const Vec& d) -> Vec {
-          return Vec::Constant(1, mesh.gap(Vec3(y + Vec3(d)), question).value);
+          return Vec::Constant(1, mesh.gap(Vec3(y + Vec3(d)), query).value);
         };
         const auto normal = [&](const Vec& d) -> Vec {
-          return mesh.gap(Vec3(y + Vec3(d)), question).normal;
+          return mesh.gap(Vec3(y + Vec3(d)), query).normal;
         };
         if (g.value > 0.95 * law.tolerance) return;  // its normal turns fast where the band ends
         expect_derivative(g.normal.transpose(), value, "gap", 1e-6, 1e-6);
@@ -173,22 +173,22 @@ TEST(RigidMesh, HasTheDerivativesOfItsGap) {
 
 /// Along a path at a distance, the change of energy is the work of the force. @returns the largest
 /// energy.
-double expect_work(const RigidMesh& mesh, const GapQuery& question, const Vec3& from,
-                   const Vec3& to, double height, int n = 4000) {
-  const contact::NormalLaw& law = question.law;
+double expect_work(const RigidMesh& mesh, const GapQuery& query, const Vec3& from, const Vec3& to,
+                   double height, int n = 4000) {
+  const contact::NormalLaw& law = query.law;
   const auto over = [&](double part) {
     Vec3 y = from + part * (to - from);
     for (int i = 0; i < 20; ++i)  // out to that distance
-      y[2] += height + question.radius - mesh.distance(y, 10.0, true);
+      y[2] += height + query.radius - mesh.distance(y, 10.0, true);
     return y;
   };
   Vec3 y = over(0.0);
-  SurfaceGap g = mesh.gap(y, question);
+  SurfaceGap g = mesh.gap(y, query);
   double energy = law.energy(g.value), work = 0.0, most = 0.0;
   const double start = energy;
   for (int i = 1; i <= n; ++i) {
     const Vec3 next = over(i / static_cast<double>(n));
-    const SurfaceGap h = mesh.gap(next, question);
+    const SurfaceGap h = mesh.gap(next, query);
     const Vec3 f = 0.5 * (law.force_and_slope(g.value).value * g.normal +
                           law.force_and_slope(h.value).value * h.normal);
     work -= f.dot(next - y);
@@ -202,7 +202,7 @@ double expect_work(const RigidMesh& mesh, const GapQuery& question, const Vec3& 
 }
 
 /// Energy without jumps along a path. @tests{surface-feature-sum}
-TEST(RigidMesh, DoesTheWorkThatItsEnergyChangesBy) {
+TEST(RigidMesh, DoesWorkEqualToItsChangeOfEnergy) {
   const contact::NormalLaw law = band(0.2);
   const RigidMesh mesh(hills(0.2));
   for (const double radius : {0.0, 0.6}) {
@@ -219,25 +219,25 @@ TEST(RigidMesh, DoesTheWorkThatItsEnergyChangesBy) {
 
 /// A ball that does not fit through a ring: at every position on the hole the force is at least
 /// that of the nearest feature, and the energy has no jumps. @tests{surface-feature-holes}
-TEST(RigidMesh, HoldsBackWhatIsWiderThanAHole) {
+TEST(RigidMesh, StopsABallWiderThanAHole) {
   const contact::NormalLaw law = band(0.2);
   const RigidMesh mesh(contact::mesh("ring", torus(3.5, 1.5, 400), {}, 0.2));
-  const GapQuery question{law, 100.0, false, 2.3};
+  const GapQuery query{law, 100.0, false, 2.3};
   Random random(9);
   int acted = 0;
   for (int k = 0; k < 500; ++k) {
     const Vec3 y = Vec3(0.3 * random.number(), 0.3 * random.number(), 1.0 + random.number());
-    const double nearest = mesh.distance(y, 10.0, false) - question.radius;
+    const double nearest = mesh.distance(y, 10.0, false) - query.radius;
     if (nearest > law.tolerance || nearest < -0.9 * law.tolerance) continue;
     ++acted;
-    EXPECT_LT(mesh.gap(y, question).value, nearest + 1e-13) << y.transpose();
+    EXPECT_LT(mesh.gap(y, query).value, nearest + 1e-13) << y.transpose();
   }
   EXPECT_GT(acted, 100);
   const Vec3 from(0.3, 0.25, 2.0), to(-0.24, -0.225, 2.0);
-  EXPECT_GT(expect_work(mesh, question, from, to, 0.05, 400), 0.99 * law.energy(0.05));
+  EXPECT_GT(expect_work(mesh, query, from, to, 0.05, 400), 0.99 * law.energy(0.05));
 }
 
-TEST(RigidMesh, KnowsItsInside) {
+TEST(RigidMesh, DistinguishesInsideFromOutside) {
   const RigidMesh mesh = ring(0.1);
   const contact::NormalLaw law = band(0.1);
   Random random(2);

@@ -146,7 +146,7 @@ TEST(RoundEdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
 
 /// Choice of the two potentials: for crossing edges the potential of points is zero, although
 /// points are as near.
-TEST(RoundEdgePair, MeetsByEdgesWhereTheyCrossAndByPointsWhereTheyDoNot) {
+TEST(RoundEdgePair, UsesEdgesWhereTheyCrossAndPointsElsewhere) {
   const SurfaceLaw l = law(0.0);
   const auto along = [&](const EdgePair& p) { return p.pressure() - p.pressure_across(); };
   const Scene cross = scene(Place::crossing, 1, 0.0), lies = scene(Place::along, 1, 0.0),
@@ -161,7 +161,7 @@ TEST(RoundEdgePair, MeetsByEdgesWhereTheyCrossAndByPointsWhereTheyDoNot) {
 
 /// Continuity of the energy from parallel to crossing lines: in a rotation with four times smaller
 /// steps its changes are four times smaller.
-TEST(RoundEdgePair, StoresWithoutJumpsAsItTurns) {
+TEST(RoundEdgePair, HasContinuousEnergyAsItTurns) {
   const SurfaceLaw l = law(0.0);
   const auto energy = [&](double angle) {
     Scene s = scene(Place::crossing, 1, 0.0);
@@ -181,7 +181,7 @@ TEST(RoundEdgePair, StoresWithoutJumpsAsItTurns) {
 }
 
 /// Contact of a point with a line of edges: it counts once at every position, also over the nodes.
-TEST(RoundEdgePair, MeetsAPointOnceAlongAStraightLineOfEdges) {
+TEST(RoundEdgePair, CountsAPointOnceAlongAStraightLineOfEdges) {
   const SurfaceLaw l = law(0.0);
   const auto energy = [&](double shift) {
     double sum = 0.0;
@@ -204,7 +204,7 @@ TEST(RoundEdgePair, MeetsAPointOnceAlongAStraightLineOfEdges) {
 }
 
 // @tests{cable-along}
-TEST(RoundEdgePair, RubsLengthwiseWithoutSumOrMoment) {
+TEST(RoundEdgePair, HasFrictionWithoutResultantAlongEdges) {
   for (const Place place : {Place::between, Place::along, Place::against})
     for (const double mu : {0.002, 50.0})
       for (const unsigned seed : {1U, 2U, 3U}) {
@@ -233,7 +233,7 @@ TEST(RoundEdgePair, RubsLengthwiseWithoutSumOrMoment) {
       }
 }
 
-TEST(RoundEdgePair, RubsWhereItCrossesWithoutSumOrMoment) {
+TEST(RoundEdgePair, HasFrictionWithoutResultantWhereEdgesCross) {
   for (const double angle : {0.2, 0.3, 0.45, 1.2})
     for (const double mu : {0.002, 50.0})
       for (const unsigned seed : {1U, 2U, 3U}) {
@@ -272,7 +272,7 @@ TEST(RoundEdgePair, RubsWhereItCrossesWithoutSumOrMoment) {
 
 /// Slip of an edge that moves along itself: its displacement, for any direction of the other edge.
 /// An edge that rolls around the other one does not slip.
-TEST(RoundEdgePair, SlidesByWhatIsDrawnAlongAndRollsFreely) {
+TEST(RoundEdgePair, SlipsByTheAxialDisplacementAndRollsFreely) {
   for (const Place place : {Place::along, Place::against}) {
     Scene s = scene(place, 4, 0.0);
     const SurfaceLaw l = law(50.0);

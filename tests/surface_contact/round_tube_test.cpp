@@ -63,7 +63,7 @@ TEST(RoundTube, HasTheDerivativesOfItsGap) {
 /// A ball in the bore or its mouth that touches both sides: the combined potential is that of both
 /// gaps, and its derivatives hold up to the axis.
 // @tests{surface-feature-sum}
-TEST(RoundTube, TouchesBothSidesOfAThickCable) {
+TEST(RoundTube, TouchesAThickCableOnBothSides) {
   const RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
   contact::NormalLaw law;
   law.tolerance = 0.02;
@@ -124,7 +124,7 @@ double largest_difference(const Simulation& a, const Simulation& b) {
 /// Results for any rotation of the tube about its axis, and for a solid bar: a polygon of 48 sides
 /// would have sagittas of 0.002 of the radius, 0.1 mm here.
 // @tests{surface-gap}
-TEST(RoundTube, BendsARopeAsAFullBarDoes) {
+TEST(RoundTube, BendsARopeAsASolidBarDoes) {
   for (const double step : {2e-3, 5e-4, 2e-5}) {
     SCOPED_TRACE(format("step {} s", step));
     Simulation bar = rope("cylinder: [0.1, 0.4]", 0.0, step);
@@ -161,7 +161,7 @@ output: {{hdf5: false}}
 }
 
 // @tests{surface-gap}
-TEST(RoundTube, HoldsRubberWhereverItsSidesWouldBe) {
+TEST(RoundTube, SupportsRubberAtAnyRotationAboutItsAxis) {
   for (const double step : {1e-3, 2.5e-4, 1e-5}) {
     SCOPED_TRACE(format("step {} s", step));
     Simulation one = rubber(0.0, step), other = rubber(2.0, step);

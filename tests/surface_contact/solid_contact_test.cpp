@@ -97,7 +97,7 @@ TEST(SolidContact, HasTheTangentOfItsForces) {
 // Continuity of the force where a point slides from one triangle to the next: along a path of half
 // a plate its changes between positions halve with their distance.
 // @tests{mesh-friction}
-TEST(SolidContact, RubsWithoutJumpsFromTriangleToTriangle) {
+TEST(SolidContact, HasContinuousFrictionAcrossTriangles) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Scene s = scene(seed, 1.0);
     const SolidContact contact = s.contact(law(0.5));
@@ -123,7 +123,7 @@ TEST(SolidContact, RubsWithoutJumpsFromTriangleToTriangle) {
 }
 
 // @tests{mesh-contact}
-TEST(SolidContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
+TEST(SolidContact, BalancesWorkAndEnergyAndKeepsMomenta) {
   for (const double way : {0.02, 0.12, 0.5})
     for (const double mu : {0.0, 0.05, 5.0})
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
@@ -159,7 +159,7 @@ TEST(SolidContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
       }
 }
 
-TEST(SolidContact, KeepsMomentaWhenStepsDampToo) {
+TEST(SolidContact, KeepsMomentaWithNumericalDamping) {
   const Scene s = scene(5, 0.5);
   const SolidContact contact = s.contact(law(0.3, 0.5));
   const Vec f = forces(contact, s, bristles(contact, s, 5));
@@ -201,7 +201,7 @@ TEST(SolidContact, LoadsMeshesThatDoNotMatchEvenly) {
 }
 
 // @tests{surface-start}
-TEST(SolidContact, StoresNothingWhereItStartsUntilItHasOpened) {
+TEST(SolidContact, StoresNoEnergyAtItsStartUntilItHasOpened) {
   Scene s;
   s.context = context_of(1.0);
   s.lower = {plate(s, 3, 0.0, true)};
@@ -270,7 +270,7 @@ TEST(SolidContact, StopsPointsThatWouldPassThrough) {
   EXPECT_LT(near.free_part(to.start(), to.step(), short_sight.data()), 0.03);
 }
 
-TEST(SolidContact, TellsWhatOverlaps) {
+TEST(SolidContact, ReportsOverlaps) {
   for (const double z : {0.5, 0.05, 0.0, -0.02}) {
     Scene s;
     s.context = context_of(1.0);

@@ -30,7 +30,7 @@ double depth_in_cube(const Vec3& x) {
   return outside > 0.0 ? -outside : -beyond.maxCoeff();
 }
 
-TEST(SolidInside, TellsHowDeepABallLiesInASolidAndTheWayOut) {
+TEST(SolidInside, FindsTheDepthOfABallInASolidAndTheDirectionOut) {
   const SolidInside cube = Cubes({Vec3::Zero()}).inside();
   EXPECT_EQ(cube.size(), 1.0);
   Random random(3);
@@ -48,7 +48,7 @@ TEST(SolidInside, TellsHowDeepABallLiesInASolidAndTheWayOut) {
   EXPECT_GT(found, 50);
 }
 
-TEST(SolidInside, TellsWhetherPartsOfASolidOverlap) {
+TEST(SolidInside, FindsSelfOverlapsOfASolid) {
   EXPECT_FALSE(Cubes({Vec3::Zero()}).inside().overlap_with_itself());
   EXPECT_FALSE(Cubes({Vec3::Zero(), {1.0, 0.0, 0.0}}).inside().overlap_with_itself())
       << "faces on each other";

@@ -282,7 +282,7 @@ TEST(SurfaceContact, HasTheTangentOfItsForces) {
 }
 
 // @tests{surface-squared-distances}
-TEST(SurfaceContact, DoesExactlyTheWorkItStoresAndTakes) {
+TEST(SurfaceContact, BalancesWorkWithStoredAndDissipatedEnergy) {
   for (const double mu : {0.0, 0.05, 5.0})
     for_scenes(law(mu), 1.0, [](const SurfaceContact& contact, const Scene& s, auto history) {
       const Vec f = forces(contact, s.nodes, history);
@@ -323,7 +323,7 @@ TEST(SurfaceContact, KeepsMomentaOfSolidAndBody) {
   });
 }
 
-TEST(SurfaceContact, SharesItsAreaAmongTheNodes) {
+TEST(SurfaceContact, DistributesItsAreaOverTheNodes) {
   const RigidSurface plane;
   const LoadedFaces faces{"quad4", {0, 1, 2, 3}};
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
@@ -341,7 +341,7 @@ TEST(SurfaceContact, SharesItsAreaAmongTheNodes) {
 }
 
 // @tests{surface-start}
-TEST(SurfaceContact, StoresNothingWhereItStarts) {
+TEST(SurfaceContact, StoresNoEnergyAtItsStart) {
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
   const SurfaceContact contact("c", surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X,
                                RigidSurface{}, {}, law(0.0));
@@ -378,7 +378,7 @@ TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
   EXPECT_LT(part({8.0, 0, -8.0}), 0.5);
 }
 
-TEST(SurfaceContact, LeavesOutWhatItIsToldTo) {
+TEST(SurfaceContact, LeavesOutGivenNodes) {
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
   const SurfacePoints some = surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {1, 3});
   EXPECT_EQ(some.nodes, (std::vector<int>{0, 2}));
@@ -389,7 +389,7 @@ TEST(SurfaceContact, LeavesOutWhatItIsToldTo) {
 }
 
 /// Gaps of hulls, cones and ellipsoids equal to those of boxes, flanks and spheres.
-TEST(ConvexSurface, HasTheGapOfTheShapeThatItIs) {
+TEST(ConvexSurface, HasTheGapsOfEquivalentShapes) {
   using enum RigidSurface::Kind;
   Random random(41);
   const RigidSurface plate{.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = kTolerance};

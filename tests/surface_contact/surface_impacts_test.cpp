@@ -43,7 +43,7 @@ TEST(SurfaceImpacts, OfARopeReboundByTheirRestitutionAtAnyStep) {
 }
 
 // @tests{impact-friction}
-TEST(SurfaceImpacts, RubByTheImpulseThatBelongsToTheirRestitution) {
+TEST(SurfaceImpacts, HaveFrictionImpulsesByTheirRestitution) {
   const double mu = 0.1, along = 3.0;
   for (const double e : {0.0, 0.5})
     for (const double step : {2e-3, 4e-4, 4e-5}) {
@@ -56,7 +56,7 @@ TEST(SurfaceImpacts, RubByTheImpulseThatBelongsToTheirRestitution) {
 }
 
 // @tests{surface-turn}
-TEST(SurfaceImpacts, OfASolidOnAFreeBodyKeepMomentaAndNeverGiveEnergy) {
+TEST(SurfaceImpacts, OfASolidOnAFreeBodyKeepMomentaAndNeverAddEnergy) {
   for (const double e : {0.0, 0.5, 1.0})
     for (const double step : {5e-3, 1e-3}) {
       SCOPED_TRACE(format("e = {}, step {} s", e, step));
@@ -108,7 +108,7 @@ analysis: {{duration: 6 ms, step: {3}}}
 /// Velocities of equal masses after impact: their mean, plus or minus half of e times the approach
 /// velocity.
 // @tests{cable-impact}
-TEST(SurfaceImpacts, OfCablesAcrossEachOtherReboundByTheirRestitutionAtAnyStep) {
+TEST(SurfaceImpacts, OfCrossedCablesReboundByTheirRestitutionAtAnyStep) {
   for (const double e : {0.0, 0.3, 0.7, 1.0})
     for (const double step : {2e-3, 4e-4, 2e-5}) {
       SCOPED_TRACE(format("e = {}, step {} s", e, step));
@@ -127,7 +127,7 @@ TEST(SurfaceImpacts, OfCablesAcrossEachOtherReboundByTheirRestitutionAtAnyStep) 
 
 /// Friction impulse between two equal cables, which changes their momenta by opposite amounts.
 // @tests{cable-impact}
-TEST(SurfaceImpacts, OfCablesAcrossEachOtherRubByTheirImpulse) {
+TEST(SurfaceImpacts, OfCrossedCablesHaveFrictionImpulsesByTheirRestitution) {
   const double mu = 0.1, along = 1.0;
   for (const double e : {0.0, 0.5})
     for (const double step : {2e-3, 4e-4, 4e-5}) {

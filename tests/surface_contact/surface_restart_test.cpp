@@ -84,7 +84,7 @@ output: {{hdf5: false}}
 }
 
 /// States saved before the impact and in every fourth step of it, some after maximum compression.
-TEST(SurfaceRestart, AmidImpactsGoesOnBitForBit) {
+TEST(SurfaceRestart, DuringImpactsContinuesBitForBit) {
   for (const Fall& fall : falls())
     for (const double e : {0.0, 0.5}) {
       SCOPED_TRACE(format("{}, e = {}", fall.name, e));

@@ -28,7 +28,7 @@ PairMotion aligned(Random& random, const StepContext& context, const Mat3& R_a, 
 }  // namespace
 
 // @tests{free-angle-gradient}
-TEST(FreeAngle, HasADiscreteGradientThatGivesTheWholeTurn) {
+TEST(FreeAngle, HasADiscreteGradientThatGivesTheFiniteRotation) {
   for (const bool on_b : {false, true})
     for (const double turn : {1e-9, 1e-3, 0.019, 0.021, 0.3, -1.4, 2.0}) {
       Random random(3);
@@ -53,7 +53,7 @@ TEST(FreeAngle, TurnsAtTheMeanRateOverAStepAtSpectralRadiusOne) {
   EXPECT_NEAR(s.rate, 0.5 / context.dt, 1e-13);
 }
 
-TEST(FreeAngle, HasTheTangentsOfWhatItGives) {
+TEST(FreeAngle, HasItsTangents) {
   for (const bool conserving : {true, false})
     for (const bool on_b : {false, true})
       for (const double rho_inf : {1.0, 0.5, 0.0}) {
@@ -84,7 +84,7 @@ TEST(FreeAngle, HasTheTangentsOfWhatItGives) {
       }
 }
 
-TEST(FreeAngle, ChoosesTheTurnNearestToWhatItIsGiven) {
+TEST(FreeAngle, ChoosesTheTurnNearestToAGivenAngle) {
   const FreeAngle angle;
   const BodyStep a = BodyStep::ground(1.0);
   const BodyStep b =

@@ -22,7 +22,7 @@ static_assert(kNumbersOf<Record> == 6);
 static_assert(!HistoryRecord<std::vector<double>>);
 static_assert(!HistoryRecord<Vec3>, "its copy may do anything");
 
-TEST(HistoryRecord, LiesInAHistoryFieldAfterField) {
+TEST(HistoryRecord, IsStoredFieldAfterField) {
   std::vector<double> history(8, -1.0);
   Record record{1.0, {2.0, 3.0, 4.0}, {5.0, 6.0}};
   write_record(record, history.data() + 1);

@@ -50,7 +50,7 @@ static_assert(!Interaction<Rows>);
 static_assert(!HasInteractionFunctions<WrongType>);
 static_assert(!HasInteractionFunctions<NoKind>);
 
-TEST(Interaction, HasAllOfWhatBelongsTogether) {
+TEST(Interaction, DetectsMisspeltFunctions) {
   EXPECT_TRUE(OwnFunctions<Misspelt>::history_size);
   EXPECT_FALSE(OwnFunctions<Misspelt>::commit);
   EXPECT_TRUE(OwnFunctions<Remembers>::commit);

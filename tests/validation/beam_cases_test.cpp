@@ -100,7 +100,7 @@ TEST(BeamCases, RightAngleCantileverSwings) {
 // Reference: ANCF cables of another program, 64 elements at 0.1 ms. The element of this program is
 // different, with errors of second order in mesh and step: the bound is a quarter of that of half
 // the elements.
-TEST(BeamCases, FlexiblePendulumFollowsThePeers) {
+TEST(BeamCases, FlexiblePendulumAgreesWithThePeer) {
   const struct {
     double t, x, y, within;
   } peer[] = {{0.5, 1.2295069, -1.5808064, 1e-3},

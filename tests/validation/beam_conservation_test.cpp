@@ -82,7 +82,7 @@ TEST(BeamConservation, SwingingUnderGravityKeepsEnergy) {
   EXPECT_LE(r.angular_momentum_drift, 1e-11);
 }
 
-TEST(BeamConservation, ViscosityTakesWhatTheLedgerSays) {
+TEST(BeamConservation, ViscosityDissipatesTheEnergyInTheLedger) {
   Simulation s = simulate({.relaxation_time = 2e-3}, 0.02, 200.0);
   const double start = energy(s);
   double before = start;

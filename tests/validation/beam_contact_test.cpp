@@ -49,7 +49,7 @@ contacts: {default: {friction: 0, restitution: 1}}
 analysis: {duration: 0.1 s, step: 0.1 ms}
 )";
 
-TEST(BeamContact, BarOnTwoPegsSagsAsTheTextbookSays) {
+TEST(BeamContact, BarOnTwoPegsDeflectsByTheClosedForm) {
   Simulation s(read_model_text(kOnPegs, "pegs.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;

@@ -78,7 +78,7 @@ TEST(BeamFile, TheArcOf45DegreesBendsOutOfItsPlane) {
             6.5e-3);
 }
 
-TEST(BeamFile, ACantileverBendsAsTheDifferentialEquationsSay) {
+TEST(BeamFile, ACantileverBendsByTheDifferentialEquations) {
   const Vec3 tip = tip_of(kCantilever);
   EXPECT_NEAR(tip.x(), 2.0 - 0.15097114423929137, 8e-6);
   EXPECT_NEAR(tip.y(), 0.7105685978536354, 8e-6);
@@ -87,7 +87,7 @@ TEST(BeamFile, ACantileverBendsAsTheDifferentialEquationsSay) {
 
 // Timoshenko's, exact. Errors of the averaged mass are a quarter of those of 16 elements, which are
 // −0.40, −0.29, 0.07 % (tests/beams/beam_dynamics_test.cpp).
-TEST(BeamFile, AFreeBarSwingsAsTimoshenkoSays) {
+TEST(BeamFile, AFreeBarHasTimoshenkosFrequencies) {
   const ModalAnalysis bar(read_model_text(kFreeBar, "bar.yaml"));
   ASSERT_TRUE(bar.converged()) << bar.message();
   const std::vector<Mode>& modes = bar.report().modes;

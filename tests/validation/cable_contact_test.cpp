@@ -77,7 +77,7 @@ TEST(CableContact, AFastBallDoesNotPassThroughAThinCable) {
   }
 }
 
-TEST(CableContact, EverySolverOfTheBodiesDoesTheSame) {
+TEST(CableContact, AllSolversAgree) {
   Simulation by_blocks(hit(2e-4, 0.02, 3.0, "0.113, 0.001"));
   ASSERT_EQ(by_blocks.run().end, RunEnd::finished);
   for (const char* solver : {"klu", "sparse_lu"}) {
@@ -124,7 +124,7 @@ TEST(CableContact, RopeOverADrumSlipsAboveTheRatioOfEytelwein) {
 }
 
 /// Without friction the drum is a pulley: Atwood's machine, with the mass of the rope.
-TEST(CableContact, SmoothDrumIsAPulley) {
+TEST(CableContact, SmoothDrumActsAsAPulley) {
   const double heavy = 1.5;
   const Drum drum(8, heavy, 0.0, 0.3);
   Simulation s(drum.model);
@@ -142,7 +142,7 @@ TEST(CableContact, SmoothDrumIsAPulley) {
 
 /// A rope that sags onto a thin peg, at rest: each half is a parabola between two supports, whose
 /// tension follows from the length; the peg carries the part of the weight that the ends do not.
-TEST(CableContact, RopeOnAPegCarriesItsWeightAsTheParabolaSays) {
+TEST(CableContact, RopeOnAPegCarriesItsWeightByTheParabola) {
   const double l = 0.5, EA = 1e4, free = 0.495, w = 1.5 * 9.81;
   Simulation s(read_model_text(R"(
 format: 1

@@ -40,7 +40,7 @@ output: {{hdf5: false}}
 // Tensions of a sliding rope: in the ratio e^{μβ}, apart from its vibrations, and the weights fall
 // as M(g − a) = R m (g + a). The rope is extended by millimetres, of a displacement of 0.5 m.
 // @tests{cable-capstan}
-TEST(CableFriction, SlidesAtTheCapstansRatio) {
+TEST(CableFriction, SlidesAtTheCapstanRatio) {
   const double mu = 0.2, R = std::exp(mu * std::numbers::pi), M = 8.0, m = 2.0;
   const double a = kG * (M - R * m) / (M + R * m);
   for (const double h : {0.02, 0.002, 0.0002}) {
@@ -115,7 +115,7 @@ output: {hdf5: false}
   }
 }
 
-TEST(CableFriction, GoesOnAfterARestartBitForBit) {
+TEST(CableFriction, ContinuesAfterARestartBitForBit) {
   const std::string text = weights(8.0, "friction: 0.2", 0.4);
   Simulation straight = made(text);
   (void)finished(straight);
@@ -127,7 +127,7 @@ TEST(CableFriction, GoesOnAfterARestartBitForBit) {
   EXPECT_EQ(second.state_hash(), straight.state_hash());
 }
 
-TEST(CableFriction, TellsWhatIsWrong) {
+TEST(CableFriction, ReportsErrors) {
   expect_fault(weights(3.0, "friction: 0.2, tension: 3"),
                "cables.rope.friction: cannot be combined with tension.");
   expect_fault(weights(3.0, "friction: 0.2, wraps: [1]"),

@@ -65,7 +65,7 @@ TEST(CableOnSolid, KeepsEnergyAndMomenta) {
 }
 
 /// Friction and impacts dissipate energy and conserve momenta.
-TEST(CableOnSolid, RubsAndKeepsMomenta) {
+TEST(CableOnSolid, HasFrictionAndKeepsMomenta) {
   Simulation s(thrown("position: [0.003, 0.013, 0.056]}, velocity: [1, 0.5, -3]", "1 MPa",
                       "restitution: 0.5, friction: 0.5", 0.01, 2e-4));
   double energy = s.balance().kinetic, rise = 0.0;
@@ -113,7 +113,7 @@ analysis: {duration: 2 ms, step: 1 ms}
 
 /// Cables that start within a solid are refused, except where the cable is attached to a body to
 /// which the solid is bonded.
-TEST(CableOnSolid, RefusesStartsWithin) {
+TEST(CableOnSolid, RefusesCablesThatStartWithinASolid) {
   const auto error_of = [](const std::string& bonded, double height) -> std::string {
     try {
       Simulation(read_model_text(format(R"(
@@ -144,7 +144,7 @@ analysis: {{duration: 0.1 ms, step: 0.1 ms}}
 
 /// A cable that is pulled down across a soft block: the contact force balances the forces of its
 /// ends.
-TEST(CableOnSolid, PressesWithWhatItsEndsCarry) {
+TEST(CableOnSolid, HasAContactForceThatBalancesItsEnds) {
   for (const double beside : {0.0, 0.013}) {
     Simulation s(read_model_text(format(R"(
 format: 1

@@ -95,7 +95,7 @@ TEST(CableOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
 
 /// A bead that fits closely about the cable, with a clearance of a twentieth of its radius, is
 /// thrown across it: the cable touches both sides of the bore and of its mouths.
-TEST(CableOnTriangles, KeepsEnergyAndMomentaOfABeadAboutIt) {
+TEST(CableOnTriangles, KeepsEnergyAndMomentaOfABeadAroundIt) {
   for (const double step : {5e-4, 2e-4, 5e-5}) {
     Simulation s(thrown("{tube: [0.02, 0.0084, 0.04], orientation: {axis: y, angle: 90 deg}}",
                         "position: [0.013, 0, 0], velocity: [0.3, 0.5, -1], "
@@ -200,7 +200,7 @@ analysis: {{type: statics}}
 }
 
 /// Depth of a cable that starts within a body: it is in the message.
-TEST(CableOnTriangles, RefusesStartsWithin) {
+TEST(CableOnTriangles, RefusesCablesThatStartWithinABody) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
   const auto error_of = [&](const std::string& from, double height, const std::string& shape) {

@@ -19,7 +19,7 @@ constexpr double g = 9.81;
 
 /// Two tight cables across each other, the ends of the upper one 30 mm below those of the lower
 /// one: both are kinked at the contact, by angles that follow from the forces.
-TEST(CablePairs, TightCablesKinkEachOtherAsForcesSay) {
+TEST(CablePairs, TightCablesBendEachOtherByTheForceBalance) {
   const double radius = 5e-3, below = 0.03, EA_1 = 2e4, EA_2 = 5e4, half_1 = 1.0, half_2 = 0.7;
   const double free_1 = 0.995, free_2 = 0.69, kGuess = 0.02;
   Model model = read_model_text(format(R"(
@@ -107,7 +107,7 @@ analysis: {{step: 0.5 ms, duration: 0.25}}
                          "sled.yaml");
 }
 
-TEST(CablePairs, ACableAcrossTwoOthersSlidesOnASlopeAsCoulombSays) {
+TEST(CablePairs, ACableAcrossTwoOthersSlidesOnASlopeByCoulombsLaw) {
   const double mu = 0.3;
   for (const double slope : {std::atan(0.29), std::atan(0.31), 0.5}) {
     Simulation s(sled_model(slope, mu));

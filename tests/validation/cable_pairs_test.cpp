@@ -112,7 +112,7 @@ TEST(CablePairs, FastCablesDoNotPassThroughEachOther) {
 
 /// Changing coupling of bodies by a cable while other bodies are in contact: two balls collide,
 /// then the second one hits the upper cable.
-TEST(CablePairs, EverySolverOfTheBodiesDoesTheSame) {
+TEST(CablePairs, AllSolversAgree) {
   const auto model = [](const std::string& solver) {
     Model m = crossed(2e-4, 0.02, 3.0, 0.9);
     m.analysis.solver = solver;
@@ -144,7 +144,7 @@ analysis: {duration: 1, step: 0.1}
   }
 }
 
-TEST(CablePairs, MeetAsGroupsAndExclusionsSay) {
+TEST(CablePairs, TouchByGroupsAndExclusions) {
   const auto pairs = [](const std::string& of_one, const std::string& of_two,
                         const std::string& contacts) {
     Simulation s(read_model_text(format(R"(
@@ -243,7 +243,7 @@ TEST(CablePairs, StrandsOfOneRopeDoNotPassEachOther) {
   EXPECT_LT(least, -1e-3) << "without contact it passes through";
 }
 
-TEST(CablePairs, GoOnFromACheckpointInTheSameBits) {
+TEST(CablePairs, ContinueFromACheckpointInTheSameBits) {
   for (const bool self : {false, true}) {
     const Model model =
         self ? loop(3.0, 1e-4, 0.03, "friction: 0.3, restitution: 0.5", ", self: true")
@@ -270,7 +270,7 @@ TEST(CablePairs, GoOnFromACheckpointInTheSameBits) {
 
 /// Three ropes from one hook at small angles, which overlap there, and one that ends where it
 /// began: pieces near the hook are excluded from contact, and overlaps elsewhere are reported.
-TEST(CablePairs, LeaveOutWhatIsNearACommonAttachment) {
+TEST(CablePairs, LeaveOutPiecesNearACommonAttachment) {
   Simulation s(read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]

@@ -79,7 +79,7 @@ TEST(Cam, MovesItsFollowerByTheClosedForm) {
 }
 
 // Under a moment the energy of cam and follower is the supplied work. @tests{curve-gradient}
-TEST(Cam, PassesOnTheWorkThatItIsGiven) {
+TEST(Cam, TransmitsTheSuppliedWork) {
   for (const Step& step : kSteps) {
     const Outcome o = run(eccentric(kCircle, "moment: 0.3 N*m"), {step_of(step)});
     EXPECT_LT(o.summary.energy_drift, 1e-11) << step.text;
@@ -88,7 +88,7 @@ TEST(Cam, PassesOnTheWorkThatItIsGiven) {
   }
 }
 
-TEST(Cam, HasItsOrders) {
+TEST(Cam, ConvergesWithEachOrder) {
   const auto at = [](int order, double h) {
     return run(eccentric(kCircle, "moment: 0.3 N*m"),
                {"variables.h=" + std::to_string(h) + " s", "analysis.duration=0.8 s",
@@ -107,7 +107,7 @@ TEST(Cam, HasItsOrders) {
 }
 
 // A bead in an elliptic groove: energy, reported speed, and its position in the plane.
-TEST(Groove, LeadsABeadWithoutWork) {
+TEST(Groove, GuidesABeadWithoutWork) {
   for (const Step& step : kSteps) {
     const Outcome o = run(R"(
 format: 1
@@ -141,7 +141,7 @@ output: {hdf5: false}
       << summary.message;
 }
 
-TEST(Groove, SaysWhatIsWrongWithACurve) {
+TEST(Groove, ReportsInvalidCurves) {
   const auto message = [](const std::string& curve) {
     try {
       (void)read_model_text(

@@ -218,7 +218,7 @@ Finding compare(const Certificate& certificate, const std::string& name, const E
 
 class Certified : public testing::TestWithParam<CertifiedCase> {};
 
-TEST_P(Certified, ErrorBarHoldsTheTrueErrorAndIsNotTenTimesAsWide) {
+TEST_P(Certified, ErrorBarContainsTheTrueErrorAndIsNotTenTimesAsWide) {
   const CertifiedCase& c = GetParam();
   const Certificate certificate = certify(c.model);
   EXPECT_TRUE(certificate.converges());

@@ -61,7 +61,7 @@ output: {hdf5: false}
 
 // T = m g (1 − cos ωt): 1.5 m g at cos ωt = −1/2. The event ends the run there.
 // @tests{event-time}
-TEST(Channels, TensionOfACableLetsAnEventCome) {
+TEST(Channels, TensionOfACableTriggersAnEvent) {
   const double w = std::sqrt(200.0 / 2.0);
   const std::string text =
       weight("events: {e: {when: {cable: rope, channel: tension, above: 29.43 N}, stop: true}}");
@@ -109,7 +109,7 @@ output: {hdf5: false}
 
 // A weight under an elastic bar of one element: (m + m_b/3) ü = −(m + m_b/2) g − k u, so that the
 // force of the bar is k u = F (1 − cos ωt).
-TEST(Channels, ForceOfABeamLetsAnEventComeAndIsControlled) {
+TEST(Channels, ForceOfABeamTriggersAnEventAndIsControlled) {
   const double m = 2.0, m_b = 0.3, k = 2000.0;
   const double w = std::sqrt(k / (m + m_b / 3.0)), F = (m + 0.5 * m_b) * kG;
   const auto text = [](const std::string& more) {
@@ -146,7 +146,7 @@ output: {hdf5: false}
 }
 
 // Channels of a node of a beam are those of a body: the tip of a bar in free fall.
-TEST(Channels, NodesOfBeamsAndSolidsLetEventsCome) {
+TEST(Channels, NodesOfBeamsAndSolidsTriggerEvents) {
   for (const char* of : {"body: bar.end", "solid: cube, node: 0", "solid: cube, point: [0, 0, 0]"})
     for (const double h : {kCoarse, kDefault, kFine})
       for (const char* channel : {"vz, below: -1 m/s", "speed, above: 1 m/s"}) {
@@ -169,7 +169,7 @@ output: {{hdf5: false}}
 
 // A block between plates that move apart, all nodes prescribed: the strain is uniaxial, the stress
 // of St. Venant-Kirchhoff (1 + e)(λ + 2μ)(e + e²/2) at any step.
-TEST(Channels, StressOfASolidLetsAnEventCome) {
+TEST(Channels, StressOfASolidTriggersAnEvent) {
   const double c = 1.2e6, e = 0.05 * 0.7, level = (1.0 + e) * c * (e + 0.5 * e * e);
   for (const double h : {kCoarse, kDefault, kFine * 10.0}) {
     const std::string text = format(R"(
@@ -248,7 +248,7 @@ output: {hdf5: false}
 }  // namespace
 
 // The gap decreases by 1 m in 1 s, within and beyond the range of contact and for sensors, too.
-TEST(Channels, GapsLetEventsCome) {
+TEST(Channels, GapsTriggerEvents) {
   for (const double h : {kCoarse, kDefault, kFine})
     for (const double level : {0.55, 0.3, 0.01, -0.05}) {
       const std::string contacts = level > 0.0
@@ -306,7 +306,7 @@ output: {hdf5: false, probes: {press: {contact: [block, floor]}}}
 
 // m g + 40 t = 39.62 N at half a second: a slow ramp is in equilibrium at any step, apart from
 // vibrations of the block on its barrier.
-TEST(Channels, ForcesOfContactLetEventsCome) {
+TEST(Channels, ContactForcesTriggerEvents) {
   for (const char* channel : {"normal", "fz", "force"}) {
     const std::string text =
         pressed("40*t", format("events: {{rests: {{at: 0.3 s, off: [idle]}}, e: {{after: rests, "
@@ -335,7 +335,7 @@ TEST(Channels, ForcesOfContactLetEventsCome) {
 }
 
 // Sampled control of a press to a given force: u_k from the force m g + u_{k−1} of the last step.
-TEST(Channels, ForcesOfContactAreControlledBySamples) {
+TEST(Channels, ContactForcesAreControlledBySamples) {
   const double T = 0.1, ki = 5.0, target = 50.0, weight = 2.0 * kG;
   double u = 0.0, sum = 0.0, last = target;
   for (int k = 1; k <= 9; ++k) {
@@ -358,7 +358,7 @@ TEST(Channels, ForcesOfContactAreControlledBySamples) {
 
 // Reports do not depend on whether events or controllers read them: forces of contact are those of
 // the step, not of the previous one.
-TEST(Channels, AreReportedAsIfNobodyReadThem) {
+TEST(Channels, DoNotDependOnBeingReadByEvents) {
   const std::string probes = "output.probes.block={body: block}";
   Simulation plain = made(pressed("40*t", ""), {probes});
   Simulation watched =
@@ -372,7 +372,7 @@ TEST(Channels, AreReportedAsIfNobodyReadThem) {
 }
 
 // A run in two parts, divided before the event: the same bits, since trial steps leave no trace.
-TEST(Channels, GoOnBitForBitAfterARestart) {
+TEST(Channels, ContinueBitForBitAfterARestart) {
   const std::string text =
       pressed("40*t",
               "events: {e: {when: {contact: [block, floor], channel: impulse, above: 9}, off: "
@@ -390,7 +390,7 @@ TEST(Channels, GoOnBitForBitAfterARestart) {
   }
 }
 
-TEST(Channels, SayWhatIsWrong) {
+TEST(Channels, ReportErrors) {
   const auto event = [](const std::string& when) {
     return weight("events: {e: {when: {" + when + ", above: 1}, stop: true}}");
   };

@@ -27,7 +27,7 @@ constexpr double kBulkOverShear = 1000.0;
 
 class CompressedBlock : public testing::TestWithParam<Compression> {};
 
-TEST_P(CompressedBlock, StaysEvenAndHasTheStabilityOfItsElements) {
+TEST_P(CompressedBlock, StaysHomogeneousAndHasTheStabilityOfItsElements) {
   const Compression& c = GetParam();
   const double n = c.cells;
   const Mesh mesh =

@@ -45,7 +45,7 @@ TEST(Connectors, AQuadraticSpringHasThePeriodOfItsBetaFunction) {
 
 // A spring in tension only releases the slider at x = 0: from a quarter of the period on it has the
 // speed A ω.
-TEST(Connectors, ASpringOnOneSideLetsGo) {
+TEST(Connectors, AOneSidedSpringReleasesItsBody) {
   const double omega = 5.0, T = 0.5 * kPi / omega + 0.4;
   for (const Step& step : kSteps) {
     const Outcome o =
@@ -106,7 +106,7 @@ output: {hdf5: false}
 
 // Two bodies about their common centre: half axis 1.5 of the relative orbit, eccentricity 0.4,
 // period 2π √(a³ m₁m₂/(m₁+m₂)/K). @tests{attraction-gradient}
-TEST(Connectors, TwoBodiesGoRoundKeplersEllipse) {
+TEST(Connectors, TwoBodiesFollowKeplersEllipse) {
   const double K = 7.0, m_1 = 2.0, m_2 = 3.0, reduced = m_1 * m_2 / (m_1 + m_2), a = 1.5, e = 0.4;
   const double T = 2.0 * kPi * std::sqrt(a * a * a * reduced / K);
   const double l = a * (1.0 - e), v = std::sqrt(K / reduced * (2.0 / l - 1.0 / a));
@@ -346,7 +346,7 @@ output: {hdf5: false}
 }
 
 // Statics: 50 x + 60 x³ = 40 N; a moment over a gear on a spring.
-TEST(Connectors, StandInStatics) {
+TEST(Connectors, HaveEquilibriaInStatics) {
   Outcome o = run(R"(
 format: 1
 gravity: [20, 0, 0]
@@ -379,7 +379,7 @@ output: {hdf5: false}
 }
 
 // Impossible connectors are refused with their location.
-TEST(Connectors, RefuseWhatTheyCannotDo) {
+TEST(Connectors, RefuseInvalidInput) {
   const auto message = [](const std::string& text) -> std::string {
     try {
       Simulation s(read_model_text(text, "m.yaml"));

@@ -53,7 +53,7 @@ TEST(Conservation, OfTheClosedSpatialSliderCrank) {
   expect_conserved(run_steps(spatial_slider_crank(), 2e-3, kSteps), kJointed, kSteps);
 }
 
-TEST(Conservation, OfAChainWithSpringsOfEverySort) {
+TEST(Conservation, OfAChainWithSpringsOfEveryKind) {
   expect_conserved(run_steps(sprung_chain(), 2e-3, kSteps), kJointed, kSteps);
 }
 
@@ -102,7 +102,7 @@ TEST_P(Chain, ConservesEnergyAndMomenta) {
   expect_conserved(run_steps(m.model, 1e-3, kSteps), kJointed, kSteps);
 }
 
-TEST(Conservation, WeldedToTheGroundAllStandsStill) {
+TEST(Conservation, OfBodiesWeldedToTheGround) {
   Model model = chain("fixed", 3, true);
   model.analysis.step = 1e-3;
   model.analysis.duration = 10.0;

@@ -48,7 +48,7 @@ int count_hits(Scene& s) {
   return hits;
 }
 
-TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
+TEST_P(Tied, BodiesKeepEnergyAndMomentaOverThousandsOfSteps) {
   const auto all = every_shape();
   const NamedShape &first = all[GetParam().first], &second = all[GetParam().second];
   Random random(11);
@@ -87,7 +87,7 @@ struct Carrying {
 };
 class TiedWithSolids : public testing::TestWithParam<Carrying> {};
 
-TEST_P(TiedWithSolids, BodiesCollideForThousandsOfStepsAndLoseNothing) {
+TEST_P(TiedWithSolids, BodiesKeepEnergyAndMomentaOverThousandsOfSteps) {
   const auto all = every_shape();
   const NamedShape &first = all[GetParam().first], &second = all[GetParam().second];
   Scene s(Vec3::Zero());

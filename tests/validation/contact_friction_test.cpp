@@ -80,7 +80,7 @@ TEST(ContactFriction, BoxOnThirtyDegrees) {
 
 /// A disc without thickness that rolls without slip: reference by integration of the ideal
 /// equations. Tolerance: the phase of the Cayley step.
-TEST(ContactFriction, CoinRollsAsTheReferenceTells) {
+TEST(ContactFriction, CoinRollsAsTheReferenceDoes) {
   const double r = 0.01, tilt = std::numbers::pi / 180.0, tolerance = 1e-5, k = 2e9;
   const double gap = resting_gap(k, tolerance, kGravity);
   Scene s;

@@ -10,7 +10,7 @@ using namespace test;
 
 /// F = 721.3 N and t = 5.10 ms for 1 kg at 1 m/s against a Hertz spring of 1e7 N/m^{3/2}:
 /// δ = (5 m v²/(4 K))^{2/5}, F = K δ^{3/2}, t = 2.9432 δ/v.
-TEST(ContactImpact, HertzForceAndTime) {
+TEST(ContactImpact, HertzImpactHasItsForceAndDuration) {
   const double K = 1e7, deepest = std::pow(5.0 / (4.0 * K), 0.4);
   const double force = K * std::pow(deepest, 1.5), time = 2.9432 * deepest;
   Scene s(Vec3::Zero());
@@ -74,7 +74,7 @@ TEST(ContactImpact, CradleThatTouchesIsAHertzChain) {
 /// resolved by the steps; published figures (two balls at 10 m/s, 1e6 N/m) 0.101, 0.304, 0.500,
 /// 0.700, 0.900.
 /// @tests{contact-damped}
-TEST(ContactImpact, DampedReboundByAResolvedForce) {
+TEST(ContactImpact, DampedImpactHasThePublishedRestitution) {
   const double published[5] = {0.10099, 0.30423, 0.50018, 0.69997, 0.90001};
   for (int i = 0; i < 5; ++i) {
     Scene s(Vec3::Zero());

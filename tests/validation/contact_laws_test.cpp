@@ -16,7 +16,7 @@ using namespace contact_law_scenes;
 
 /// Spring laws carry bodies at rest for any masses and steps; no body rises.
 /// @tests{spring-stiffness}
-TEST(SpringLaws, CarryAnyBodyOfTheModel) {
+TEST(SpringLaws, SupportAnyBodyOfTheModel) {
   for (const Pile& pile : kPiles)
     for (const char* law : {"hertz", "linear"})
       for (const double step : {1e-2, 5e-3, 1e-3, 1e-4}) {
@@ -102,7 +102,7 @@ TEST(SpringLaws, HoldABlockOnASlopeAtAnyStep) {
 // Springs of given stiffness that are too soft for the rounded edges of their boxes: below them
 // nothing passes, energy is exact, and a warning names the pair.
 // @tests{spring-floor}
-TEST(SpringLaws, StopSoftContactsAtTheRoundingOfEdges) {
+TEST(SpringLaws, LimitPenetrationToTheRoundingOfEdges) {
   const std::string bodies =
       "  crate: {fixed: true, shape: {box: [1, 1, 0.2]}, position: [0, 0, -0.1]}\n"
       "  a: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.1]}";
@@ -198,7 +198,7 @@ TEST(SpringLaws, ReboundFromTheRoundingOfEdges) {
 // floor. Nothing gets deeper than four tolerances, also in the plane; energy is exact up to the
 // rounding of positions that close to the floor.
 // @tests{spring-floor}
-TEST(SpringLaws, LetNothingGetDeepUnderSeveralBodies) {
+TEST(SpringLaws, LimitPenetrationUnderSeveralBodies) {
   const std::string model = R"(
 format: 1
 gravity: [0, 0, 0]
@@ -224,7 +224,7 @@ analysis: {duration: 0.02 s, step: 1 ms}
     }
 }
 
-TEST(SpringLaws, RememberTheSmallestGap) {
+TEST(SpringLaws, RecordTheSmallestGap) {
   const Scene scene{kBall, "restitution: 0.5", 0.3};
   for (const char* law : {"hertz", "linear"}) {
     Simulation straight = scene.with(law, 1e-3);

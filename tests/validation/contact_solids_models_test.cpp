@@ -12,7 +12,7 @@ namespace polhode::test::contact_solids_models_tests {
 namespace {
 
 /// Impacts of bodies, stops of joints and surfaces of solids, solved together in a step.
-TEST(ContactSolidsModel, TrolleyLosesEnergyOnlyAndItsBalancesClose) {
+TEST(ContactSolidsModel, TrolleyOnlyLosesEnergyAndItsBalanceIsExact) {
   Simulation simulation(read_model(source_dir() + "/tests/validation/data/trolley.yaml"));
   const auto total = [&] { return simulation.balance().kinetic + simulation.balance().potential; };
   const auto probed = [&](std::size_t k) {

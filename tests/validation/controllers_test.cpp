@@ -134,7 +134,7 @@ TEST(Controllers, AreSampled) {
 }
 
 // PI control of the speed of a disc with viscous bearings: J ω̈ + (b + k_p) ω̇ + k_i ω = k_i ω_r.
-TEST(Controllers, HoldASpeed) {
+TEST(Controllers, ControlASpeed) {
   const double J = 0.2, b = 0.3, kp = 1.1, ki = 8.0, target = 10.0;
   using Complex = std::complex<double>;
   const Complex root = std::sqrt(Complex((b + kp) * (b + kp) - 4.0 * J * ki));
@@ -153,7 +153,7 @@ TEST(Controllers, HoldASpeed) {
 }
 
 // Step responses of a lag, of an oscillator and of a lead, to a constant error of 1.
-TEST(Controllers, AreTransferFunctions) {
+TEST(Controllers, HaveTheStepResponsesOfTransferFunctions) {
   const std::string text = R"(
 format: 1
 variables: {h: 5 ms}
@@ -187,7 +187,7 @@ output: {hdf5: false, probes: {lag: {controller: lag}}}
 
 // The limits hold without windup of the integral: the controller leaves its limit when the error
 // changes its sign.
-TEST(Controllers, KeepTheirLimits) {
+TEST(Controllers, KeepTheirLimitsWithoutWindup) {
   Simulation s = made(disc("setpoint: 10, proportional: 0.5, integral: 4, minimum: -3, maximum: 3"),
                       {"analysis.duration=4"});
   double most = 0.0, peak = 0.0;
@@ -202,7 +202,7 @@ TEST(Controllers, KeepTheirLimits) {
 }
 
 // One controller sets the speed for another.
-TEST(Controllers, GoInCascade) {
+TEST(Controllers, CanBeCascaded) {
   const std::string text = R"(
 format: 1
 bodies: {disc: {mass: 1, inertia: [0.1, 0.1, 0.2]}}
@@ -220,7 +220,7 @@ output: {hdf5: false}
 }
 
 // Simulations of the same model are independent of each other.
-TEST(Controllers, BelongToOneSimulation) {
+TEST(Controllers, AreIndependentInEachSimulation) {
   const std::string text = cart("sample: 40 ms, setpoint: 0.1, proportional: 50, derivative: 6");
   Simulation alone = made(text);
   (void)finished(alone);
@@ -233,7 +233,7 @@ TEST(Controllers, BelongToOneSimulation) {
   EXPECT_EQ(two.body(0).r[0], alone.body(0).r[0]);
 }
 
-TEST(Controllers, GoOnBitForBitAfterARestart) {
+TEST(Controllers, ContinueBitForBitAfterARestart) {
   const std::string events = "events: {let_go: {at: 0.7 s, off: [push]}}\n";
   for (const char* sample : {"", "sample: 30 ms, "})
     for (const bool switched : {false, true}) {
@@ -255,7 +255,7 @@ TEST(Controllers, GoOnBitForBitAfterARestart) {
     }
 }
 
-TEST(Controllers, TellWhatIsWrong) {
+TEST(Controllers, ReportErrors) {
   expect_fault(cart("proportional: 1, sampl: 3"), "controllers.c: unknown key 'sampl'");
   expect_fault(cart("setpoint: 1"), "controllers.c: has no gains. Give proportional, integral");
   expect_fault(cart("proportional: 1, numerator: 1"), "Give gains or a transfer function.");

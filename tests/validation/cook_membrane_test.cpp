@@ -89,7 +89,7 @@ struct CookCase {
 
 class CooksMembrane : public testing::TestWithParam<CookCase> {};
 
-TEST_P(CooksMembrane, BendsAsOthersFind) {
+TEST_P(CooksMembrane, HasThePublishedDisplacement) {
   const CookCase& c = GetParam();
   const Cook result =
       cook(c.element, c.shape, c.n, c.incompressible ? nearly_incompressible() : compressible());

@@ -131,7 +131,7 @@ TEST(CurveOnCurve, TwoEllipsesRollAboutTheirFoci) {
 }
 
 // Under a moment the energy of both is the supplied work. @tests{curves-gradient}
-TEST(CurveOnCurve, PassesOnTheWorkThatItIsGiven) {
+TEST(CurveOnCurve, TransmitsTheSuppliedWork) {
   for (const Step& step : kAtSteps) {
     const std::string duration = step.h < 1e-4 ? "0.2 s" : "0.8 s";
     const Outcome o = run(flat_faced(kOnFlat, "moment: 0.3 N*m", duration), {step_of(step)});
@@ -142,7 +142,7 @@ TEST(CurveOnCurve, PassesOnTheWorkThatItIsGiven) {
   }
 }
 
-TEST(CurveOnCurve, HasItsOrders) {
+TEST(CurveOnCurve, ConvergesWithEachOrder) {
   const auto at = [](int order, double h) {
     return run(
         flat_faced(kOnFlat, "moment: 0.3 N*m", "0.8 s"),
@@ -240,7 +240,7 @@ std::string in_a_ring(const std::string& x, const std::string& y) {
 // An ellipse of semi-axes a and b turns in a ring of radius R on a vertical guide. Where its radius
 // of curvature reaches R at P, the ring's centre P − R n is on the guide at an angle in closed
 // form; from there on the contact point would jump. @tests{curves-distance}
-TEST(CurveOnCurve, EndsWhereTheCurvesFitEachOther) {
+TEST(CurveOnCurve, EndsWhereCurvaturesAreEqual) {
   const double a = 0.05, b = 0.04, R = 0.055;
   const double slope_2 = std::pow(a * b * R, 2.0 / 3.0);  // |dP/ds|² there
   const double s = std::asin(std::sqrt((slope_2 - b * b) / (a * a - b * b)));
@@ -260,7 +260,7 @@ TEST(CurveOnCurve, EndsWhereTheCurvesFitEachOther) {
 }
 
 // A disc as large as its ring touches it everywhere, from the start.
-TEST(CurveOnCurve, DoesNotStartWhereTheCurvesFitEachOther) {
+TEST(CurveOnCurve, DoesNotStartWhereCurvaturesAreEqual) {
   std::string message;
   try {
     Simulation run(
@@ -273,7 +273,7 @@ TEST(CurveOnCurve, DoesNotStartWhereTheCurvesFitEachOther) {
   EXPECT_NE(message.find("is not unique"), std::string::npos) << message;
 }
 
-TEST(CurveOnCurve, SaysWhatIsWrongWithItsCurves) {
+TEST(CurveOnCurve, ReportsInvalidCurves) {
   const auto message = [](const std::string& contact) {
     try {
       (void)read_model_text(

@@ -60,7 +60,7 @@ TEST(DampedModes, OfAnOscillatorHaveItsDampingRatio) {
   }
 }
 
-TEST(DampedModes, OfADamperAloneAreAFreeMotionAndOneThatDies) {
+TEST(DampedModes, OfADamperAloneAreOneFreeAndOneOverdamped) {
   const ModesReport r =
       modes_of(kOscillator, {"loads.spring.stiffness=0", "loads.spring.damping=6"});
   ASSERT_EQ(r.modes.size(), 2u);
@@ -150,7 +150,7 @@ TEST(DampedModes, OfAChainWithADamperAtItsEndAreThoseOfItsCompanionMatrix) {
   }
 }
 
-TEST(DampedModes, FreeMotionsOfABodyAreThreeShiftsAndThreeTurns) {
+TEST(DampedModes, OfAFreeBodyAreThreeTranslationsAndThreeRotations) {
   const ModesReport r = modes_of(R"(
 format: 1
 bodies:
@@ -193,7 +193,7 @@ analysis: {type: modes, count: 12}
   }
 }
 
-TEST(DampedModes, OfAModelWithoutFreedomsAreNoneAndSaidToBe) {
+TEST(DampedModes, OfAModelWithoutFreedomsAreEmptyWithAWarning) {
   const ModesReport r = modes_of(R"(
 format: 1
 bodies:

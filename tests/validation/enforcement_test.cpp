@@ -45,7 +45,7 @@ constexpr const char* kDynamics = "type: dynamics, duration: 1 s, step: h";
 
 // y = (v/ω) sin ωt across the rail with ω = 20/s; along it the cart runs freely.
 // @tests{compliance-row}
-TEST(Penalty, MakesAMassSwingAcrossItsRail) {
+TEST(Penalty, LetsAMassVibrateAcrossItsRail) {
   const std::string text = cart(", velocity: [0.3, 0.1, 0]", kDynamics);
   const auto error = [&](int steps, int order) {
     Simulation s =
@@ -125,7 +125,7 @@ TEST(Penalty, GivesTheFrequenciesOfManySprings) {
 }
 
 // Sag in statics: m g/k of its springs.
-TEST(Penalty, SagsInStatics) {
+TEST(Penalty, DeflectsInStatics) {
   Simulation s = made(
       cart("", "type: statics", "gravity: [0, 0, -9.81]\n") +
       "loads: {held: {type: spring_damper, bodies: [ground, cart], at: [[-1, 0, 0], [0, 0, 0]], "
@@ -276,7 +276,7 @@ TEST(Penalty, TendsToTheExactJoint) {
 }
 
 // Results of all solvers agree.
-TEST(Penalty, GoesWithTheSolversOfTreesAndOfBlocks) {
+TEST(Penalty, AgreesWithTreeAndBlockSolvers) {
   const std::string text =
       four_bar(", enforcement: {type: penalty, stiffness: 1e6, turning_stiffness: 1e5}");
   Simulation tree = made(text, {"analysis.solver=tree"});
@@ -312,7 +312,7 @@ output: {hdf5: false}
 
 // With exact joints the weight is divided in the ratio of the stiffnesses, 3 to 1, at each step.
 // @tests{augmented-rows}
-TEST(Augmented, SharesTheWeightByStiffnessAndHolds) {
+TEST(Augmented, DistributesTheWeightByStiffnessAndIsExact) {
   for (const char* solver : {"tree", "block_lu"})
     for (const char* h : {"20 ms", "5 ms", "0.05 ms"}) {
       Simulation s = made(gate("augmented", "type: dynamics, duration: 0.2 s, step: h"),
@@ -328,7 +328,7 @@ TEST(Augmented, SharesTheWeightByStiffnessAndHolds) {
 }
 
 // The same in equilibrium, where a spring about its axis holds the gate.
-TEST(Augmented, SharesTheWeightInStatics) {
+TEST(Augmented, DistributesTheWeightInStatics) {
   std::string text = gate("augmented", "type: statics") +
                      "loads: {closer: {type: torsional_spring, joint: low, stiffness: 100}}\n";
   const std::string moves = ", angular_velocity: [0, 0, 0.5], velocity: [0, 0.4, 0]";
@@ -343,7 +343,7 @@ TEST(Augmented, SharesTheWeightInStatics) {
 }
 
 // Springs of the same stiffnesses, damped by rho_inf 0, carry the same forces.
-TEST(Augmented, SharesAsSpringsDo) {
+TEST(Augmented, DistributesLoadsAsSpringsDo) {
   Simulation springs =
       made(gate("penalty", "type: dynamics, duration: 0.5 s, step: h, rho_inf: 0"));
   Simulation exact =
@@ -387,7 +387,7 @@ output: {hdf5: false}
 
 // A ball of 1 kg hits a wall at 2 m/s with e = 0.5; a body connected to it by springs continues at
 // first.
-TEST(Penalty, CarriesNoImpulse) {
+TEST(Penalty, TransmitsNoImpulse) {
   for (const char* h : {"2 ms", "0.5 ms", "0.02 ms"}) {
     const auto end = [&](const std::string& enforcement) {
       Simulation s = made(R"(
@@ -420,7 +420,7 @@ output: {hdf5: false}
 
 // Released while its springs are deflected, and held again at its position then: the energy of the
 // springs is in the balance, and the cart continues with its velocity.
-TEST(Penalty, IsSwitchedWithItsEnergy) {
+TEST(Penalty, IsSwitchedWithItsStoredEnergy) {
   std::string text =
       cart(", velocity: [0, 0.1, 0]", kDynamics,
            "events: {go: {at: 0.05 s, off: [rail]}, hold: {at: 0.5 s, on: [rail]}}\n");
@@ -438,7 +438,7 @@ TEST(Penalty, IsSwitchedWithItsEnergy) {
   }
 }
 
-TEST(Enforcement, OfAFileIsLookedAtWhereItStands) {
+TEST(Enforcement, LocatesErrorsInTheFile) {
   const auto hinge = [](const std::string& enforcement) {
     return R"(
 format: 1

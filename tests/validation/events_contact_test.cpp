@@ -66,7 +66,7 @@ TEST(ContactEvents, LetABallFallThroughALid) {
 
 // A ball held on a lid whose contact is off, then released as the contact is switched on: it stays
 // at rest, and the energy changes only by that of the contact that carries it.
-TEST(ContactEvents, HandABallOverToALid) {
+TEST(ContactEvents, SwitchOnALidUnderABallAtRest) {
   for (const double h : {0.01, 0.001, 0.0001}) {
     Simulation s =
         made(lid("50 mm",
@@ -84,7 +84,7 @@ TEST(ContactEvents, HandABallOverToALid) {
 
 // A contact switched on again while the ball is above the lid: it rebounds with its whole speed;
 // before, it passes through the lid upwards.
-TEST(ContactEvents, CatchWhatComesBack) {
+TEST(ContactEvents, SwitchOnALidBelowABallInFlight) {
   // Upwards from below at v, through the lid, which is off; on at the top; then the ball stays
   // above.
   const double v = 4.0, start = -0.5, top = start + 0.5 * v * v / kG;
@@ -146,7 +146,7 @@ TEST(ContactEvents, SwitchAPairAndABodyOfIt) {
   EXPECT_FALSE(lies("  a: {at: 0, off: [lid]}"));
 }
 
-TEST(ContactEvents, RefuseToBeginWhereShapesOverlap) {
+TEST(ContactEvents, RefuseToSwitchOnOverlappingShapes) {
   Simulation s = made(lid("0.2",
                           "  begin: {at: 0, off: [on_lid]}\n"
                           "  in: {when: {body: ball, channel: z, below: 0}, on: [on_lid]}",
@@ -160,7 +160,7 @@ TEST(ContactEvents, RefuseToBeginWhereShapesOverlap) {
 }
 
 // A run in two parts, divided before, between and after the events: the same bits.
-TEST(ContactEvents, GoOnBitForBitAfterARestart) {
+TEST(ContactEvents, ContinueBitForBitAfterARestart) {
   const std::string text =
       lid("0.1",
           "  open: {at: 0.25 s, off: [on_lid]}\n"
@@ -182,7 +182,7 @@ TEST(ContactEvents, GoOnBitForBitAfterARestart) {
   }
 }
 
-TEST(ContactEvents, SayWhatIsWrong) {
+TEST(ContactEvents, ReportErrors) {
   const auto with = [](const std::string& names) {
     return lid("0.1", "  e: {at: 1 s, off: [" + names + "]}", "1");
   };

@@ -57,7 +57,7 @@ output: {hdf5: false}
 
 // After the release at the angle: a parabola with the velocity there, and a uniform rotation.
 // @tests{event-time} @tests{switch-rows}
-TEST(Events, LetAPendulumFlyAtItsAngle) {
+TEST(Events, ReleaseAPendulumAtAnAngle) {
   const std::string text = Pendulum::text(
       "events: {release: {when: {joint: pivot, channel: rz, above: 80 deg}, off: [pivot]}}");
   const double angle = Pendulum::release, T = 1.2, t_e = Pendulum::time_at(angle);
@@ -224,7 +224,7 @@ events:
 }
 
 // A spring that is switched off removes its energy, and one that is switched on adds it.
-TEST(Events, BookTheEnergyOfSprings) {
+TEST(Events, RecordTheEnergyOfSwitchedSprings) {
   Simulation s = made(R"(
 format: 1
 bodies: {cart: {mass: 2, inertia: [1, 1, 1], position: [1.2, 0, 0]}}
@@ -253,7 +253,7 @@ output: {hdf5: false}
 
 // A relay: a force of 3 N towards x = 0 from either side. Parabolas, from 0.2 m at rest; the period
 // is 4 √(2 m x/F). @tests{event-time}
-TEST(Events, RepeatWhereTheyAreToldTo) {
+TEST(Events, RepeatOnRequest) {
   const std::string text = R"(
 format: 1
 variables: {h: 5 ms}
@@ -340,7 +340,7 @@ TEST(Events, BreakASwingingPendulum) {
 }
 
 // A run in two parts, divided in a later phase: the same bits.
-TEST(Events, GoOnBitForBitAfterARestart) {
+TEST(Events, ContinueBitForBitAfterARestart) {
   const std::string text = discs(R"(
   clutch: {type: fixed, bodies: [one, two], at: [0, 0, 0.05]}
 events:
@@ -365,7 +365,7 @@ events:
   }
 }
 
-TEST(Events, TellWhatIsWrong) {
+TEST(Events, ReportErrors) {
   const auto with = [](const std::string& events) {
     return Pendulum::text("events:\n  e: " + events);
   };

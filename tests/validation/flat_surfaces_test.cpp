@@ -103,7 +103,7 @@ double difference(double cell, double speed, double dt, double mu, Moving moving
 }
 
 /// @tests{contact-one-gap}
-TEST(FlatSurfaces, AreThePlaneAtAnyCellSizeSpeedAndStep) {
+TEST(FlatSurfaces, AgreeWithThePlaneAtAnyCellSizeSpeedAndStep) {
   for (const double cell : {0.005, 0.02, 0.2})
     for (const double speed : {0.1, 2.0, 20.0})
       for (const double dt : {5e-3, 1e-3, 1e-4})

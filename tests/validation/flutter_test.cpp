@@ -67,7 +67,7 @@ double beck_root(double p, double low, double high) {
 }
 
 // @tests{modes-quadratic}
-TEST(Flutter, BecksColumnSwingsAsItsEquationSaysAndIsStableAtHalfTheLoad) {
+TEST(Flutter, BecksColumnHasItsFrequencyAndIsStableAtHalfTheLoad) {
   for (const double P : {2.0, 10.0, 15.0}) {
     const ModesReport r = modes_of(kBeck, {format("variables.P={}", P), "variables.n=40"});
     EXPECT_FALSE(r.symmetric);
@@ -84,7 +84,7 @@ TEST(Flutter, BecksColumnSwingsAsItsEquationSaysAndIsStableAtHalfTheLoad) {
 }
 
 /// 20.05 E I/L². @tests{modes-damped}
-TEST(Flutter, BecksColumnFluttersAtItsLoadWhateverTheMesh) {
+TEST(Flutter, BecksColumnFluttersAtItsLoadOnAnyMesh) {
   for (const int n : {10, 20, 40, 80})  // 80 by Arnoldi iterations
     EXPECT_NEAR(
         flutter_load(

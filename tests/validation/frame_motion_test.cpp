@@ -150,7 +150,7 @@ analysis: {type: dynamics, duration: T, step: h, order: 2}
 output: {hdf5: false}
 )yaml";
 
-TEST(PrescribedMotion, BetweenFreeBodiesKeepsMomentaAndItsBalance) {
+TEST(PrescribedMotion, BetweenFreeBodiesKeepsMomentaAndTheEnergyBalance) {
   for (const int order : {2, 4})
     for (const char* h : {"100 ms", "20 ms", "2 ms"}) {
       Simulation s(read_model_text(
@@ -184,7 +184,7 @@ TEST(PrescribedMotion, HasTheOrderOfTheMethod) {
 
 // A table's ramp: the body has the velocity of the slope from the kink on, and rests after the last
 // one.
-TEST(PrescribedMotion, GoesOnAfterKinksWithTheDrivesVelocity) {
+TEST(PrescribedMotion, HasTheVelocityOfTheDriveAfterKinks) {
   for (const char* h : {"30 ms", "2 ms", "0.2 ms"}) {
     Simulation s(read_model_text(
         R"yaml(
@@ -230,7 +230,7 @@ output: {hdf5: false}
   EXPECT_NEAR(s.joint(0).force.x(), 30.0, 1e-9);
 }
 
-TEST(PrescribedMotion, SaysWhatItDoesNotTake) {
+TEST(PrescribedMotion, ReportsInvalidInput) {
   const auto refused = [](const std::string& motion, const std::string& what) {
     try {
       (void)read_model_text(shaken(motion), "table.yaml");

@@ -50,7 +50,7 @@ class PinFriction : public testing::TestWithParam<const char*> {};
 
 // Reference: integration between the turning points, the couple from the pin's exact force.
 // @tests{joint-friction-limit}
-TEST_P(PinFriction, TurnsThePendulumWhereItShouldAndHoldsItInTheEnd) {
+TEST_P(PinFriction, TurnsAndStopsThePendulumAtTheReferenceAngles) {
   Model m = pendulum(1.2, 2.5e-3);
   m.joints[0].friction = JointFrictionSpec{.mu = 0.3, .radius = 0.05, .stiffness = 1e4};
   m.analysis.solver = GetParam();
@@ -71,7 +71,7 @@ TEST_P(PinFriction, TurnsThePendulumWhereItShouldAndHoldsItInTheEnd) {
 /// The two pins of a universal joint: about either of them the pendulum swings as about that of a
 /// revolute joint, while the other one sticks.
 // @tests{joint-friction-limit}
-TEST(UniversalFriction, TurnsThePendulumLikeAPinAboutEitherAxis) {
+TEST(UniversalFriction, ActsLikeAPinAboutEitherAxis) {
   for (const int pin : {0, 1}) {
     Model m = pendulum(1.2, 2.5e-3);
     m.joints.clear();
@@ -143,7 +143,7 @@ TEST(JointFriction, NeverRaisesTheEnergy) {
   }
 }
 
-TEST(JointLimits, ThrowThePendulumBackWithAllItsEnergy) {
+TEST(JointLimits, ReflectThePendulumWithAllItsEnergy) {
   Model m = pendulum(1.2, 1e-2);
   m.joints[0].limits = JointLimitsSpec{.lower = -1.5, .restitution = 1.0, .band = 2e-3};
   Simulation s(m);
@@ -161,7 +161,7 @@ TEST(JointLimits, ThrowThePendulumBackWithAllItsEnergy) {
 
 // E(peak) = E(stop) + e² (E(start) − E(stop)).
 // @tests{joint-stop-exit}
-TEST(JointLimits, GiveBackTheSpeedTimesTheRestitution) {
+TEST(JointLimits, ReturnTheSpeedTimesTheRestitution) {
   for (const double e : {0.3, 0.5, 0.8})
     for (const double step : {5e-3, 2e-3}) {
       Model m = pendulum(0.6, step);
@@ -218,7 +218,7 @@ TEST(JointFriction, LetsASliderSlideByTheDifferenceOfTheForces) {
   EXPECT_NEAR(s.joint(0).friction[0], -mu * 2.0 * kG * std::cos(slope), 1e-6);
 }
 
-TEST(JointFriction, HoldsASliderForGood) {
+TEST(JointFriction, HoldsASliderWithoutCreep) {
   const double mu = 0.5, slope = std::atan(0.9 * mu);
   Model m = slider(slope, 1e-2);
   m.joints[0].friction = JointFrictionSpec{.mu = mu};
@@ -326,7 +326,7 @@ TEST(JointFriction, IsTheSameWithEverySolver) {
   }
 }
 
-TEST(JointFriction, GoesOnAfterARestartBitForBit) {
+TEST(JointFriction, ContinuesAfterARestartBitForBit) {
   Simulation straight(double_pendulum());
   for (int k = 0; k < 150; ++k) ASSERT_TRUE(straight.step(1e3).accepted);
   Simulation again(double_pendulum(), straight.state());

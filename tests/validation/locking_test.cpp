@@ -66,7 +66,7 @@ output: {hdf5: false}
 
 // Two quadratic elements through the wall of the tube, or four linear ones, one and two through the
 // cantilever: more than 10 % too stiff in either means a warning, and a warning means that.
-TEST(Locking, IsSaidBeforeARunWhereItIsMeasured) {
+TEST(Locking, IsReportedBeforeARunWhereItIsMeasured) {
   const std::map<std::string, int> elements{{"hex8_standard", 2}, {"hex8_eas9", 2}, {"hex20", 1},
                                             {"hex27", 1},         {"tet4", 2},      {"tet10", 2},
                                             {"wedge6", 2}};

@@ -82,7 +82,7 @@ TEST(Motor, TurnsAnArmWithTheMomentOfTheClosedForm) {
 
 // Work of the motor: the energy of the arm, ½ J φ̇² − m g l sin φ, up to the difference between the
 // velocities of step and drive.
-TEST(Motor, PutsInTheEnergyThatTheArmHas) {
+TEST(Motor, SuppliesTheEnergyOfTheArm) {
   for (const char* h : {"10 ms", "1 ms"}) {
     const Driven d = run(arm("angle: \"3*t^2\""), {std::string("variables.h=") + h});
     const double step = h[1] == '0' ? 0.01 : 0.001;
@@ -243,7 +243,7 @@ std::string fault(const std::string& text, const Overrides& overrides = {}) {
   return "";
 }
 
-TEST(Motor, RefusesWhatItCannotFollow) {
+TEST(Motor, RefusesInvalidDrives) {
   EXPECT_NE(fault(arm("angle: 1, speed: 2")).find("cannot be combined with 'angle'"),
             std::string::npos);
   EXPECT_NE(fault(arm("coordinate: ry")).find("has no function of time"), std::string::npos);

@@ -53,7 +53,7 @@ TEST(NonsmoothContact, BoxOnAnInclineOfThirtyDegrees) {
 /// A rod that hits the floor with its end, e = 1, whose initial slip has the direction for which
 /// sticking adds energy: an impulse that ends the slip would add a seventh of its energy.
 /// @tests{nonsmooth-energy}
-TEST(NonsmoothContact, FrictionGivesNoEnergyToARod) {
+TEST(NonsmoothContact, FrictionAddsNoEnergyToARod) {
   for (const double slip : {0.5, 1.0})
     for (const double angle : {0.3, 0.5, 0.8}) {
       Scene s(Vec3::Zero());
@@ -151,7 +151,7 @@ TEST(NonsmoothContact, StackOfTenBoxesStands) {
 }
 
 /// Moreau's law transmits an impact through a row of balls with gaps.
-TEST(NonsmoothContact, CradleWithGapsHandsTheImpactOn) {
+TEST(NonsmoothContact, CradleWithGapsTransmitsTheImpact) {
   Scene s(Vec3::Zero());
   for (int k = 0; k < 5; ++k)
     s.add_ball("ball", 0.05, 1.0, at({0.104 * k, 0.0, 0.0}, {k == 0 ? 1.0 : 0.0, 0.0, 0.0}));

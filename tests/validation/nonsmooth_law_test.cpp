@@ -147,7 +147,7 @@ TEST(NonsmoothLaw, NothingRollsOrSlidesIntoTheFloor) {
 }
 
 /// A ton on a gram: solved to the tolerance or refused with names, but never with penetration.
-TEST(NonsmoothLaw, RefusesToPassThrough) {
+TEST(NonsmoothLaw, PreventsPenetrationUnderHeavyBodies) {
   for (const Pile& pile : kPiles)
     for (const double step : {1e-2, 1e-3, 1e-4}) {
       const Scene scene{pile.bodies, "friction: 0.5"};
@@ -164,7 +164,7 @@ TEST(NonsmoothLaw, RefusesToPassThrough) {
 
 /// Gaps, forces and energy of a stack whose light boxes lie below heavy ones, with rolling
 /// friction: sweeps alone let it collapse by millimetres. @tests{nonsmooth-projection}
-TEST(NonsmoothLaw, CarriesHeavyBoxesOnLightOnesThatResistRolling) {
+TEST(NonsmoothLaw, SupportsHeavyBoxesOnLightOnesWithRollingFriction) {
   const Scene scene{
       "  a: {shape: {box: [0.2, 0.2, 0.1]}, mass: 0.01, position: [0, 0, 0.05]}\n"
       "  b: {shape: {box: [0.2, 0.2, 0.1]}, mass: 5, position: [0.01, 0, 0.15]}\n"
@@ -230,7 +230,7 @@ TEST(NonsmoothLaw, NoEdgePassesThroughAnother) {
 
 /// A heavy slab that would sink into the boxes below it, with few sweeps and with too many points
 /// for the other searches.
-TEST(NonsmoothLaw, SaysWhatWouldOverlap) {
+TEST(NonsmoothLaw, NamesBodiesThatWouldOverlap) {
   std::string bodies =
       "  heavy: {shape: {box: [2, 2, 0.5]}, mass: 1000000, position: [0, 0, 0.55]}";
   for (int k = 0; k < 49; ++k)

@@ -72,7 +72,7 @@ BodyMotion end_of(const Moving& moving, const std::string& floor, double step) {
 }
 
 /// @tests{nonsmooth-exit} @tests{contact-direction}
-TEST(NonsmoothSurface, TrianglesOfAPlaneAreThePlane) {
+TEST(NonsmoothSurface, TrianglesOfAPlaneActAsThePlane) {
   for (const Moving& moving : kMoving)
     for (const double step : {1e-2, 5e-3, 1e-3, 1e-4}) {
       const BodyMotion plane = end_of(moving, "", step);
@@ -145,7 +145,7 @@ TEST(NonsmoothSurface, ABallStaysInAPocket) {
 
 /// On a closed sheet, thinner than the way of a step, bodies move as on the plane of its upper
 /// side.
-TEST(NonsmoothSurface, ASheetIsThePlaneOfItsUpperSide) {
+TEST(NonsmoothSurface, ASheetActsAsThePlaneOfItsUpperSide) {
   const Scratch folder;
   for (const double thickness : {1e-2, 8e-4}) {
     std::vector<Vec3> points;

@@ -215,9 +215,9 @@ class HigherOrder : public testing::TestWithParam<Composed> {
   }
 };
 
-TEST_P(HigherOrder, FourIsFour) { expect(4, GetParam().steps_4, 3.8, 4.2); }
-TEST_P(HigherOrder, SixIsSix) { expect(6, GetParam().steps_6, 5.8, 6.2); }
-TEST_P(HigherOrder, EightIsEight) { expect(8, GetParam().steps_8, 7.3, 8.7); }
+TEST_P(HigherOrder, FourIsObserved) { expect(4, GetParam().steps_4, 3.8, 4.2); }
+TEST_P(HigherOrder, SixIsObserved) { expect(6, GetParam().steps_6, 5.8, 6.2); }
+TEST_P(HigherOrder, EightIsObserved) { expect(8, GetParam().steps_8, 7.3, 8.7); }
 
 INSTANTIATE_TEST_SUITE_P(Of, HigherOrder,
                          testing::Values(composed_heavy_top(), composed_chain(),

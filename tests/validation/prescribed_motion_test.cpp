@@ -76,7 +76,7 @@ TEST(PrescribedMotion, AViscousBarThatIsHeldAfterARampRests) {
 // Drives by a sine, a table with kinks, a spline, jumps of acceleration or velocity: the supplied
 // work is the energy of the model.
 // @tests{prescribed-work}
-TEST(PrescribedMotion, WorkPutInIsEnergyFoundWhateverTheDrive) {
+TEST(PrescribedMotion, SuppliedWorkIsTheEnergyForAnyDrive) {
   for (const char* end :
        {"\"1e-2*sin(30*t)\"", "{table: [[0, 0], [0.13, 0.01], [0.37, -0.02], [0.5, 0]]}",
         "{table: [[0, 0], [0.13, 0.01], [0.37, -0.02], [0.5, 0]], interpolation: cubic}",
@@ -121,7 +121,7 @@ TEST(PrescribedMotion, ConvergesWithTheOrderOfTheMethod) {
 }
 
 // The same at rho_inf < 1: fixed nodes are at rest, and the wave of the ramp is damped.
-TEST(PrescribedMotion, HeldNodesStandWithNumericalDamping) {
+TEST(PrescribedMotion, HeldNodesRestWithNumericalDamping) {
   for (const char* rho : {"0", "0.5", "0.9"})
     for (const char* step : {"2 ms", "0.2 ms"}) {
       const Seen s = run(bar("{table: [[0, 0], [0.1, -0.01]], interpolation: linear}",

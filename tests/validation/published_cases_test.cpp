@@ -69,7 +69,7 @@ std::vector<PeerStep> steps() {
 
 class Published : public testing::TestWithParam<PeerStep> {};
 
-TEST_P(Published, IsMetAtThePeersStep) {
+TEST_P(Published, IsReproducedAtThePeersStep) {
   const PeerStep& c = GetParam();
   Model model = c.published.model;
   model.analysis.step = c.step;

@@ -77,7 +77,7 @@ struct Grid {
 };
 class FlatFourBar : public testing::TestWithParam<Grid> {};
 
-TEST_P(FlatFourBar, IsPassed) {
+TEST_P(FlatFourBar, IsPassedOnTheSameBranch) {
   const auto [N, step, phi] = GetParam();
   Model model = n_four_bar(N, phi);
   model.analysis.step = step;

@@ -141,7 +141,7 @@ Model runaway() {
   return m.model;
 }
 
-TEST(StepRefusal, EndsARunThatNoStepCanFollowAndSaysWhoIsAtFault) {
+TEST(StepRefusal, EndsARunThatNoStepCanFollowAndNamesTheBody) {
   Simulation s(runaway());
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::not_converged);

@@ -62,7 +62,7 @@ Deviation coin_deviation(int order, const std::string& h) {
 
 // Positions to a millionth of the radius; angular velocities of 30 rad/s. @tests{rolling-height}
 // @tests{rolling-slip}
-TEST(Rolling, FollowsTheReferenceOfTheCoin) {
+TEST(Rolling, FollowsTheReferenceSolutionOfACoin) {
   const Deviation coarse = coin_deviation(2, "0.5 ms"), fine = coin_deviation(2, "0.1 ms");
   EXPECT_GE(fine.samples, 100);
   EXPECT_LT(fine.largest, 2e-2);
@@ -75,7 +75,7 @@ TEST(Rolling, FollowsTheReferenceOfTheCoin) {
   }
 }
 
-TEST(Rolling, HasItsOrders) {
+TEST(Rolling, ConvergesWithEachOrder) {
   const Simulation exact = [] {
     Simulation s(
         read_model_text(coin(6), "coin.yaml", {"variables.h=0.5 ms", "analysis.duration=0.2 s"}));
@@ -118,7 +118,7 @@ output: {hdf5: false}
 
 // s̈ = g sin α/(1 + J/(m r²)): 5/7 of it for a ball, 2/3 for a disc; the rest is the friction
 // force.
-TEST(Rolling, RunsDownASlope) {
+TEST(Rolling, AcceleratesDownASlope) {
   struct Case {
     const char* body;
     const char* load;
@@ -202,7 +202,7 @@ output: {hdf5: false}
   }
 }
 
-TEST(Rolling, GoesOnAfterARestartBitForBit) {
+TEST(Rolling, ContinuesAfterARestartBitForBit) {
   const auto model = [] {
     return read_model_text(coin(2), "coin.yaml", {"analysis.duration=0.1 s"});
   };

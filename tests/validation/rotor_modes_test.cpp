@@ -73,7 +73,7 @@ std::vector<double> overhung(double spin) {
 }
 
 // @tests{modes-gyroscopic}
-TEST(RotorModes, OfAnOverhungDiscSplitAsTheGyroscopicMomentSays) {
+TEST(RotorModes, OfAnOverhungDiscSplitByTheGyroscopicMoment) {
   for (const double spin : {0.0, 10.0, 100.0, 1000.0}) {
     const ModesReport r = modes_of(kOverhung, {format("variables.spin={}", spin)});
     EXPECT_EQ(r.symmetric, spin == 0.0);
@@ -87,7 +87,7 @@ TEST(RotorModes, OfAnOverhungDiscSplitAsTheGyroscopicMomentSays) {
   }
 }
 
-TEST(RotorModes, OfABodyThatIsNotAlikeAboutItsAxisAreSaidToBeThoseOfAnInstant) {
+TEST(RotorModes, WarnThatModesOfAnAsymmetricRotorHoldForAnInstant) {
   const ModalAnalysis rotor(read_model_text(kOverhung, "rotor.yaml", {"variables.flat=0.01"}));
   ASSERT_FALSE(rotor.report().warnings.empty());
   EXPECT_NE(rotor.report().warnings[0].find("modes hold for this instant only"), std::string::npos);
@@ -151,7 +151,7 @@ analysis: {type: modes, count: 4}
 )";
 
 // @tests{modes-circulatory}
-TEST(RotorModes, GrowAboveTheSpeedAtWhichInnerDampingDrivesThem) {
+TEST(RotorModes, AreUnstableAboveTheLimitSpeedOfInternalDamping) {
   const double k = 3.0 * 300.0 / 0.125, m = 4.0, c_i = 1e-3 * k, c_e = 4.0;
   const double limit = std::sqrt(k / m) * (1.0 + c_e / c_i);
   for (const double part : {0.5, 0.99, 1.01, 1.5}) {

@@ -72,7 +72,7 @@ analysis: {type: dynamics, duration: 2 s, step: h}
 output: {hdf5: false}
 )";
 
-TEST(RunErrors, AStepTooLongForTheMotionIsSaid) {
+TEST(RunErrors, StepsTooLongForTheMotionAreReported) {
   const RunSummary coarse = run(kPole);
   ASSERT_TRUE(coarse.errors);
   EXPECT_GT(coarse.errors->largest, 1e-2);
@@ -84,7 +84,7 @@ TEST(RunErrors, AStepTooLongForTheMotionIsSaid) {
 }
 
 // Round-off over round-off is no drift. @tests{drift-floor}
-TEST(RunErrors, WhatRestsDoesNotDrift) {
+TEST(RunErrors, BodiesAtRestDoNotDrift) {
   for (const char* step : {"10 ms", "1 ms", "0.1 ms"}) {
     const RunSummary r = run(R"(
 format: 1
@@ -106,7 +106,7 @@ output: {hdf5: false}
 }
 
 // An impact with a given stiffness lasts 3 ms: steps of 1 ms do not resolve its force.
-TEST(RunErrors, AnImpactShorterThanItsLawAsksForIsSaid) {
+TEST(RunErrors, ImpactsWithTooFewStepsAreReported) {
   const char* text = R"(
 format: 1
 gravity: [0, 0, -9.81]

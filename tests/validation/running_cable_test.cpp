@@ -39,7 +39,7 @@ output: {hdf5: false}
 
 // Atwood's machine: a = (m1 − m2) g/(m1 + m2), exactly if the initial extension is that of the
 // motion; parabolas are exact at any step. @tests{running-cable}
-TEST(RunningCable, IsAtwoodsMachine) {
+TEST(RunningCable, MovesAtwoodsMachineByTheClosedForm) {
   const double T = 2.0 * 3.0 * 2.0 * kG / 5.0, a = kG / 5.0;
   const double stiffness = 4e4, free = 5.0 / (1.0 + T / stiffness);
   for (const double h : {0.05, 0.005, 0.0005}) {
@@ -56,7 +56,7 @@ TEST(RunningCable, IsAtwoodsMachine) {
 }
 
 // A given tension: each weight has its own parabola; its work is supplied energy.
-TEST(RunningCable, PullsWithItsTension) {
+TEST(RunningCable, ActsWithItsTension) {
   for (const double h : {0.05, 0.0005}) {
     Simulation s = made(weights("tension: 25 N"), {"h=" + std::to_string(h)});
     const RunSummary r = finished(s);
@@ -70,7 +70,7 @@ TEST(RunningCable, PullsWithItsTension) {
 
 // A tackle: a block on two falls, with a weight at the end of the rope. T = 3 g/(4/M + 1/m) in the
 // mean; the stiff rope vibrates about it.
-TEST(RunningCable, IsATackle) {
+TEST(RunningCable, MovesATackleByTheClosedForm) {
   Simulation s = made(R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -187,7 +187,7 @@ output: {hdf5: false}
 }
 
 // Against Runge-Kutta's rule on m z̈ = T − m g with the curves. @tests{muscle-force}
-TEST(RunningCable, LiftsAsAMuscle) {
+TEST(RunningCable, LiftsAWeightByItsMuscle) {
   const auto tension = [](double length, double rate, double t) {
     const double width = std::sin(10.0 * 3.14159265358979323846 / 180.0);
     const double along = (length - 0.2) / 0.12, fibre = std::hypot(along, width);
@@ -226,7 +226,7 @@ TEST(RunningCable, LiftsAsAMuscle) {
   }
 }
 
-TEST(RunningCable, TellsWhatIsWrong) {
+TEST(RunningCable, ReportsErrors) {
   const auto has = [](const std::string& rope, const std::string& wanted) {
     expect_fault(weights(rope), wanted);
   };

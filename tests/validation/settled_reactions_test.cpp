@@ -15,7 +15,7 @@ namespace {
 
 /// Σw = 1, zero first and (with four) second moment, and zero response to alternating terms.
 /// @tests{settled-weights}
-TEST(SettledReactions, TakeWeightsThatAreExactForQuadraticsAndLeaveOutWhatAlternates) {
+TEST(SettledReactions, HaveWeightsExactForQuadraticsThatRemoveAlternatingTerms) {
   for (const std::vector<double>& dt :
        {std::vector<double>{0.1, 0.1, 0.1, 0.1}, {0.02, 0.03, 0.015, 0.04}, {0.01, 0.01, 0.02}}) {
     const std::vector<double> w = extrapolation_weights(dt);

@@ -51,7 +51,7 @@ double speed_of_wheel(const BodyMotion& wheel) { return wheel.W.norm(); }
 
 // Driven at 7 rad/s the wheel turns at 7 rad/s, at 40 degrees and at each step; a cardan's at
 // 7 cos β/(1 − sin²β sin²φ), as its first pin starts across both shafts. @tests{joint-equal-turns}
-TEST(ConstantVelocity, TurnsTheOtherShaftAsFast) {
+TEST(ConstantVelocity, TurnsBothShaftsAtTheSameSpeed) {
   const double beta = 40.0 * kPi / 180.0;
   for (const Step& step : kSteps) {
     const Outcome o =
@@ -69,7 +69,7 @@ TEST(ConstantVelocity, TurnsTheOtherShaftAsFast) {
 }
 
 // A moment of 0.6 N m on the first shaft turns both: (J_1 + J_2) φ̈ = M.
-TEST(ConstantVelocity, PassesTheWholeMomentOn) {
+TEST(ConstantVelocity, TransmitsTheWholeMoment) {
   for (const Step& step : kSteps) {
     const Outcome o =
         run(bent_shafts("constant_velocity", 0.6, "moment: 0.6 N*m"), {step_of(step)});
@@ -117,7 +117,7 @@ TEST(ShaftsAndRods, KeepEnergyAndBothMomentaOfAFlyingPair) {
       }
 }
 
-TEST(ShaftsAndRods, HaveTheirOrder) {
+TEST(ShaftsAndRods, ConvergeWithTheOrderOfTheMethod) {
   for (const char* joint : kFlyingJoints) {
     SCOPED_TRACE(joint);
     const Outcome exact = run(flying_pair(joint, 6), {"variables.h=2 ms"});
@@ -191,7 +191,7 @@ output: {hdf5: false}
 
 // Fall of 0.3 m and rebound with e times the speed: z = −0.5 + e v t − g t²/2.
 // @tests{turn-law}
-TEST(SlackLink, ThrowsBackWhatFallsIntoIt) {
+TEST(SlackLink, LetsAFallingBodyReboundByTheRestitution) {
   const double g = 9.81, t = 0.35, v = std::sqrt(2.0 * g * 0.3), fall = v / g;
   for (const double e : {1.0, 0.5})
     for (const double dt : {5e-3, 1e-3, 2e-4}) {
@@ -206,7 +206,7 @@ TEST(SlackLink, ThrowsBackWhatFallsIntoIt) {
     }
 }
 
-TEST(SlackLink, HangsOnItsEndWithoutRestitution) {
+TEST(SlackLink, CarriesItsBodyAtFullLengthWithoutRestitution) {
   for (const char* h : {"5 ms", "1 ms", "0.2 ms"}) {
     Simulation s(read_model_text(leash(0.0), "leash.yaml",
                                  {std::string("variables.h=") + h, "analysis.duration=1 s"}));

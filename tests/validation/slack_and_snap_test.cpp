@@ -60,7 +60,7 @@ TEST(SlackCable, FindsTheShapeOfTheCatenary) {
   }
 }
 
-TEST(SlackCable, IsNamed) {
+TEST(SlackCable, IsNamedInAWarning) {
   Simulation s(read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -111,7 +111,7 @@ double mises_limit() {
 }
 
 // @tests{statics-jump}
-TEST(Snap, PastALimitPointIsSaidWhateverTheLoadSteps) {
+TEST(SnapThrough, IsReportedAtAnyNumberOfLoadSteps) {
   const double limit = mises_limit();
   for (const int steps : {1, 2, 10, 37})
     for (const double part : {1.05, 1.5, 4.0}) {
@@ -144,7 +144,7 @@ TEST(Snap, PastALimitPointIsSaidWhateverTheLoadSteps) {
 }
 
 /// The squared frequency decreases to zero at the limit load: by the tangent, dP/dz.
-TEST(Snap, TheTrussHasTheFrequencyOfItsTangent) {
+TEST(Truss, HasTheFrequencyOfItsTangent) {
   const double limit = mises_limit(), l_0 = std::hypot(1.0, 0.2);
   for (const double part : {0.5, 0.9, 0.99, 0.999}) {
     const ModalAnalysis truss(read_model_text(
@@ -166,7 +166,7 @@ analysis: {type: statics}
 output: {hdf5: false}
 )";
 
-TEST(Held, ASolidWithoutAFreeNodeRunsInStaticsAndModes) {
+TEST(SolidWithoutAFreeNode, RunsInStaticsAndModes) {
   Simulation s(read_model_text(kHeldBlock, "cube.yaml"));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;

@@ -97,7 +97,7 @@ TEST(SolidConservation, MidpointStressDoesNotKeepEnergy) {
   EXPECT_LE(plain.momentum_drift(), 1e-11);  // any symmetric stress conserves momenta
 }
 
-TEST(SolidConservation, ViscosityTakesWhatTheLedgerSays) {
+TEST(SolidConservation, ViscosityDissipatesTheEnergyInTheLedger) {
   FlexibleScene s({.relaxation_time = 2e-3});
   double before = s.stepper->balance(s.state).kinetic + s.stepper->balance(s.state).potential;
   const double start = before;

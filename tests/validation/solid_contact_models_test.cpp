@@ -169,7 +169,7 @@ TEST(SolidContactModel, KeepsEnergyAndMomentaOfCubesThatCollide) {
   EXPECT_GT(summary.contacts->least_gap, 0.0);
 }
 
-TEST(SolidContactModel, FrictionTakesEnergyAndNothingElse) {
+TEST(SolidContactModel, FrictionOnlyDissipatesEnergyAndKeepsMomenta) {
   Simulation simulation(
       two_cubes("restitution: 1, friction: 0.5", "{duration: 0.1 s, step: 0.5 ms}"));
   double lost = 0.0;
@@ -184,7 +184,7 @@ TEST(SolidContactModel, FrictionTakesEnergyAndNothingElse) {
   EXPECT_LT(summary.angular_momentum_drift, 1e-12);
 }
 
-TEST(SolidContactModel, GoesOnFromACheckpointInTheSameBits) {
+TEST(SolidContactModel, ContinuesFromACheckpointInTheSameBits) {
   const Model model =
       two_cubes("restitution: 0.5, friction: 0.5", "{duration: 60 ms, step: 0.5 ms}");
   const Scratch folder;
@@ -332,7 +332,7 @@ struct Crossing {
 };
 
 // @tests{edge-potential}
-TEST(SolidContactModel, EdgesThatCrossBetweenTheirNodesDoNotPass) {
+TEST(SolidContactModel, CrossedEdgesDoNotPassBetweenTheirNodes) {
   for (const std::string law :
        {"restitution: 1", "restitution: 1, friction: 0.4", "restitution: 0"}) {
     SCOPED_TRACE(law);

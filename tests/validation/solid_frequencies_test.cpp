@@ -57,7 +57,7 @@ struct FreeBar {
 class FreeSolidBar : public testing::TestWithParam<FreeBar> {};
 
 // Steel, 2 m by 0.1 m by 0.1 m, ν = 0.3: 128.957 Hz with a shear factor of 5/6.
-TEST_P(FreeSolidBar, VibratesAsTimoshenkoSays) {
+TEST_P(FreeSolidBar, VibratesWithTimoshenkosFrequencies) {
   const FreeBar& c = GetParam();
   System system;
   add_bar(system, c.bar, {2.0, 0.1, 0.1}, 0.0, 2e11, 7800.0, kFreeNode);
@@ -93,7 +93,7 @@ struct CarriedBar {
 class SolidBarOnABody : public testing::TestWithParam<CarriedBar> {};
 
 // Frequencies of a body with a solid bonded to it: 2 kg, a bar of 6 m, free in space.
-TEST_P(SolidBarOnABody, VibratesAsItsMeshIsKnownTo) {
+TEST_P(SolidBarOnABody, VibratesWithTheKnownFrequenciesOfItsMesh) {
   const CarriedBar& c = GetParam();
   System system;
   const int hub = system.add_body(

@@ -57,7 +57,7 @@ analysis: {type: statics}
 /// A free block that is pulled at one end and, by the body it is bonded to, at the other: its
 /// elongation is that of one whose body is fixed to the ground, and it does not drift for any size
 /// of the load. @tests{statics-deflation} @tests{statics-rigid}
-TEST(SolidsInStatics, ThatNothingHoldsStretchWhereTheyAre) {
+TEST(SolidsInStatics, WithoutSupportsStretchWithoutDrift) {
   const auto run = [](bool held, const std::string& load) {
     Simulation s(read_model_text(
         R"(
@@ -104,7 +104,7 @@ output: {hdf5: false}
 /// A ball pressed onto one twice as stiff: the pole of the stiffer one rests in a dent of the
 /// other, as near to one triangle as to its mirror image. Hertz: 4/3 E* √R* δ^(3/2) (K. L. Johnson,
 /// Contact Mechanics, 1985, section 4.2). @tests{statics-kink}
-TEST(SolidsInStatics, SettleInADent) {
+TEST(SolidsInStatics, FindAnEquilibriumAtAKinkOfTheContact) {
   Simulation simulation(read_model_text(R"(
 format: 1
 variables: {T: 1 s}
@@ -135,7 +135,7 @@ analysis: {type: statics, load_steps: 6}
 
 /// A small block pushed across a large one, farther than the search radius of the contact neighbour
 /// list.
-TEST(SolidsInStatics, FindTheirPartnersWhereTheyGo) {
+TEST(SolidsInStatics, FindNewContactPartnersAsTheyMove) {
   const auto pressed = [](double start, double way) {
     Simulation simulation(read_model_text(format(R"(
 format: 1

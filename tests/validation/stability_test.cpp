@@ -38,7 +38,7 @@ output: {hdf5: false}
 )";
 
 // @tests{statics-supports}
-TEST(Stability, OfTheRightAngleFrameIsLostAtItsLoadWhateverTheMesh) {
+TEST(Stability, OfTheRightAngleFrameIsLostAtItsLoadOnAnyMesh) {
   for (const int n : {5, 10, 20, 40, 80, 200}) {
     const StaticReport r = statics_of(kFrame, {"variables.n=" + std::to_string(n)});
     EXPECT_EQ(r.unstable, 1) << n;
@@ -115,7 +115,7 @@ TEST(Stability, OfACantileverColumnIsLostAtEulersLoad) {
 
 /// A wire under tension or none: transverse frequencies of a cantilever, (1.875104/L)² √(E I/(ρ
 /// A)), for any slenderness, conditions of the stiffness to 1e14 and more.
-TEST(Stability, WiresHaveTheirTonesHoweverSlender) {
+TEST(Stability, WiresHaveTheirFrequenciesAtAnySlenderness) {
   for (const auto& [d, n] :
        {std::pair("0.01", 20), {"1e-3", 40}, {"1e-4", 40}, {"1e-5", 40}, {"1e-5", 200}}) {
     const ModalAnalysis wire(read_model_text(
@@ -147,7 +147,7 @@ analysis: {type: statics}
 output: {hdf5: false}
 )";
 
-TEST(Stability, AnElasticaBendsAsKnownHoweverStiffAlongItself) {
+TEST(Stability, AnElasticaBendsByTheClosedFormAtAnyAxialStiffness) {
   for (const char* stiff : {"1e5", "1e7", "1e9"})
     for (const auto& [P, u, w] : {std::tuple("1", 0.05643, 0.30172), {"10", 0.55500, 0.81061}}) {
       Simulation s(read_model_text(
@@ -171,7 +171,7 @@ cables:
 analysis: {type: modes, count: 6, about: start}
 )";
 
-TEST(Stability, TheModesOfAStringBeginWithItsTone) {
+TEST(Stability, TheModesOfAStringBeginWithItsFundamental) {
   const ModalAnalysis string(read_model_text(kString, "string.yaml"));
   ASSERT_TRUE(string.converged()) << string.message();
   const std::vector<Mode>& modes = string.report().modes;
@@ -202,7 +202,7 @@ analysis: {type: statics}
 output: {hdf5: false}
 )";
 
-TEST(Stability, OfLeesFrameIsLostAtItsLimitLoadWhateverTheMesh) {
+TEST(Stability, OfLeesFrameIsLostAtItsLimitLoadOnAnyMesh) {
   for (const int k : {2, 4, 8}) {
     const StaticReport r = statics_of(
         kLee, {"variables.k=" + std::to_string(k), "loads.p.body=frame." + std::to_string(6 * k)});

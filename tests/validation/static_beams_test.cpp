@@ -111,7 +111,7 @@ TEST(StaticBeams, AMomentRollsABeamUpInOneLoadStep) {
     }
 }
 
-TEST(StaticBeams, ACantileverBendsAsTheDifferentialEquationsSay) {
+TEST(StaticBeams, ACantileverBendsByTheDifferentialEquations) {
   const auto reference = references();
   const double L = 2.0, h = 0.5, w = 0.1, E = 2.07e11, nu = 0.3;
   const double A = h * w, I_z = w * h * h * h / 12.0, I_y = h * w * w * w / 12.0;

@@ -29,7 +29,7 @@ analysis: {{type: dynamics, duration: {:.17g} s, step: {}}}
 
 /// Slip begins at 0.6 of the weight to 1 % and continues with 0.5: 12 ms at 1 m/s².
 /// @tests{contact-patch}
-TEST(StaticFriction, IsThatOfThePatch) {
+TEST(StaticFriction, IsThatOfTheWholeContactPatch) {
   const char* kBox = "a: {shape: {box: [0.2, 0.2, 0.1]}, mass: 1, position: [0, 0, 0.05]}";
   const char* kCylinder = "a: {shape: {cylinder: [0.1, 0.1]}, mass: 1, position: [0, 0, 0.05]}";
   const char* kStack =
@@ -48,7 +48,7 @@ TEST(StaticFriction, IsThatOfThePatch) {
 /// A block laid on 30 degrees, tan = 0.577, at rest and with gap 0: static friction of 0.6 holds it
 /// although sliding friction of 0.5 would not, while it settles in its band and after.
 /// @tests{contact-patch}
-TEST(StaticFriction, HoldsWhatIsLaidOnAnIncline) {
+TEST(StaticFriction, HoldsABlockOnAnIncline) {
   for (const char* shape : {"box: [0.4, 0.4, 0.2]", "cylinder: [0.4, 0.2]"})
     for (const char* step : {"10 ms", "5 ms", "1 ms", "0.1 ms"}) {
       Simulation run(read_model_text(format(R"(

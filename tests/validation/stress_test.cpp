@@ -58,7 +58,7 @@ output: {hdf5: false}
 )";
 
 // @tests{nodal-stress}
-TEST(NodalStress, OfACantileverIsThatOfBendingHoweverThinTheMesh) {
+TEST(NodalStress, OfACantileverIsThatOfBendingForAnyNumberOfLayers) {
   const std::map<std::string, std::array<double, 3>> allowed{{"hex20", {0.01, 0.01, 0.01}},
                                                              {"hex27", {0.01, 0.01, 0.01}},
                                                              {"hex8_eas9", {0.02, 0.02, 0.02}},
@@ -232,7 +232,7 @@ TEST(NodalStress, AtAHoleInAPlateIsThatOfKirsch) {
 }
 
 // Warning of a mesh that is too coarse for its load: a cantilever by linear elements of one layer.
-TEST(StressError, IsToldInWordsWhereItIsLarge) {
+TEST(StressError, IsReportedInAWarningWhereItIsLarge) {
   const Solved coarse = solve(kTube, {"solids.tube.element=tet4"});
   EXPECT_GT(coarse.summary.solids.at(0).error, 0.1);
   ASSERT_FALSE(coarse.summary.warnings.empty());

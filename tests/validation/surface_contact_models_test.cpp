@@ -147,7 +147,7 @@ analysis: {duration: 0.3 s, step: 1 ms}
 /// The end of a ball of radius 1 pressed on a plane. Hertz: with the force F and E* = E/(1 − ν²)
 /// the radius of contact is (3 F R/(4 E*))^(1/3), the pressure in the middle 3 F/(2π a²)
 /// (K. L. Johnson, Contact Mechanics, 1985, section 4.2).
-TEST(SurfaceContactModel, CarriesTheEndOfABallAsHertzSays) {
+TEST(SurfaceContactModel, CarriesTheEndOfABallByHertz) {
   constexpr int kAcross = 14, kDeep = 12;
   const double E = 1e6, nu = 0.3;
   const auto graded = [](int i, double first, int even, double growth) {
@@ -202,7 +202,7 @@ analysis: {type: statics}
 /// The same with an octant of the whole ball, cells graded towards the pole: six of them over the
 /// radius of contact, a/R = 0.04. The remaining error is mostly that of the finite size of the ball
 /// and of the mesh.
-TEST(SurfaceContactModel, CarriesAnOctantOfABallAsHertzSays) {
+TEST(SurfaceContactModel, CarriesAnOctantOfABallByHertz) {
   constexpr double kModulus = 1e6, kPoisson = 0.3;
   Simulation simulation(read_model_text(R"(
 format: 1

@@ -160,7 +160,7 @@ TEST(SurfaceContact, ABlockThatBouncesKeepsItsEnergy) {
   EXPECT_LT(b.state.ledger.p_drift / b.state.ledger.p_scale, 1e-11);
 }
 
-TEST(SurfaceContact, FrictionOnlyTakesEnergyFromABlock) {
+TEST(SurfaceContact, FrictionOnlyDissipatesEnergyOfABlock) {
   const double step = 4e-3;
   Block b = thrown(0.4, step);
   double energy = b.state.ledger.initial_energy, rise = 0.0;

@@ -27,7 +27,7 @@ std::string flat_field(int n, double spacing) {
 }
 
 /// A cube of rubber and a body that spins freely, in space.
-Model meeting(const std::string& shape, const std::string& law, const std::string& duration) {
+Model collision(const std::string& shape, const std::string& law, const std::string& duration) {
   return read_model_text(R"(
 format: 1
 bodies:
@@ -44,7 +44,7 @@ contacts: {default: {)" + law +
 analysis: {duration: )" + duration +
                              R"(, step: 0.5 ms}
 )",
-                         "meeting.yaml");
+                         "collision.yaml");
 }
 
 TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
@@ -53,7 +53,7 @@ TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
   write_obj(file, torus(0.07, 0.03));
   for (const std::string& shape :
        {format("{{mesh: {}}}", file), std::string("{tube: [0.16, 0.08, 0.1]}")}) {
-    Simulation simulation(meeting(shape, "restitution: 1", "0.15 s"));
+    Simulation simulation(collision(shape, "restitution: 1", "0.15 s"));
     const RunSummary summary = simulation.run();
     ASSERT_EQ(summary.end, RunEnd::finished) << shape << summary.message;
     EXPECT_GT(simulation.contact(0).impulse, 0.1) << shape;
@@ -65,9 +65,9 @@ TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
 
 /// With a spring law points are within the surface: the balance with the reported stored energy is
 /// closed after each step.
-TEST(SurfaceOnTriangles, TellsWhatSpringsStoreWithin) {
+TEST(SurfaceOnTriangles, ReportsTheEnergyStoredBySpringLaws) {
   Simulation simulation(
-      meeting("{tube: [0.16, 0.08, 0.1]}", "law: linear, restitution: 1", "0.1 s"));
+      collision("{tube: [0.16, 0.08, 0.1]}", "law: linear, restitution: 1", "0.1 s"));
   const auto total = [&] {
     const Balance b = simulation.balance();
     return b.kinetic + b.potential + b.dissipated - b.put_in;
@@ -81,11 +81,11 @@ TEST(SurfaceOnTriangles, TellsWhatSpringsStoreWithin) {
   EXPECT_LT(most, 1e-10 * before);
 }
 
-TEST(SurfaceOnTriangles, GoesOnFromACheckpointInTheSameBits) {
+TEST(SurfaceOnTriangles, ContinuesFromACheckpointInTheSameBits) {
   const Scratch folder;
   write_obj(folder / "ring.obj", torus(0.07, 0.03));
-  const Model model = meeting(format("{{mesh: {}}}", folder / "ring.obj"),
-                              "restitution: 0.5, friction: 0.5", "80 ms");
+  const Model model = collision(format("{{mesh: {}}}", folder / "ring.obj"),
+                                "restitution: 0.5, friction: 0.5", "80 ms");
   const std::string file = folder / "checkpoint.pst";
   Simulation straight(model);
   int touched = 0;
@@ -238,7 +238,7 @@ analysis: {type: statics}
   EXPECT_NEAR(simulation.contact(0).force[2], 30.0, 1e-8);
 }
 
-TEST(SurfaceOnTriangles, RefusesStartsWithin) {
+TEST(SurfaceOnTriangles, RefusesSolidsThatStartWithinABody) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
   const auto error_of = [](const std::string& body, const std::string& law = "") -> std::string {

@@ -40,7 +40,7 @@ constexpr double kSpan = 0.4, kBand = 1e-3 * 0.01414;  // a thousandth of its ra
 
 /// The tension is the centripetal force; the angle is v t / l.
 // @tests{turn-law}
-TEST(TautLink, LeadsAStoneRoundInACircle) {
+TEST(TautLink, GuidesAStoneInACircle) {
   for (const double e : {0.0, 0.5})
     for (const double step : {5e-3, 1e-3, 5e-5}) {
       SCOPED_TRACE(format("e = {}, step {} s", e, step));
@@ -57,7 +57,7 @@ TEST(TautLink, LeadsAStoneRoundInACircle) {
 /// An earlier version took the tension for an impact in each step and moved towards the end of its
 /// band each time.
 // @tests{turn-law}
-TEST(TautLink, TakesUpAPull) {
+TEST(TautLink, TightensAndThenCarriesItsTension) {
   for (const double e : {0.0, 0.5})
     for (const double step : {5e-3, 1e-3, 5e-5}) {
       SCOPED_TRACE(format("e = {}, step {} s", e, step));

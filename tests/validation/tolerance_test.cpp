@@ -59,7 +59,7 @@ void expect_followed(const Deviation& d, double tolerance) {
   EXPECT_LE(d.summary.energy_drift, 1e-10);
 }
 
-TEST_P(Tolerance, IsFollowedByTheError) {
+TEST_P(Tolerance, BoundsTheErrorUpToAFactor) {
   const auto& [c, tolerance] = GetParam();
   // Order 2 needs millions of steps for these.
   if (c.name == "A05" && tolerance < 5e-8 && std::getenv("POLHODE_SLOW_TESTS") == nullptr)
@@ -69,7 +69,7 @@ TEST_P(Tolerance, IsFollowedByTheError) {
   expect_followed(d, tolerance);
 }
 
-TEST_P(Tolerance, IsFollowedAtOrderEight) {
+TEST_P(Tolerance, BoundsTheErrorAtOrderEight) {
   const auto& [c, tolerance] = GetParam();
   if (c.name == "A05") GTEST_SKIP() << "has dampers";
   expect_followed(end_of(c, tolerance, 8), tolerance);

@@ -135,7 +135,7 @@ TEST_P(TubeOnAFloor, RollsOnItsOwnRadius) {
   EXPECT_NEAR(s.motion(wheel).v.x(), v, 1e-4 * v);
 }
 
-TEST_P(TubeOnAFloor, SlidesOnItsFaceToAHalt) {
+TEST_P(TubeOnAFloor, SlidesOnItsEndFaceToAHalt) {
   const double v = 1.0, mu = 0.3;
   Scene s;
   const int tube = s.add("tube", round_tube(0.3, 0.2, 0.2), 1.0, {0.01, 0.01, 0.015},

@@ -54,7 +54,7 @@ class ChannelsTest : public testing::Test {
   test::Scratch folder_;
 };
 
-TEST_F(ChannelsTest, AStoneFallsAsTheBooksSay) {
+TEST_F(ChannelsTest, AFallingStoneFollowsTheClosedForm) {
   const std::vector<ChannelColumn> z = channel_columns(results(), "bodies.stone.position.z");
   ASSERT_EQ(z.size(), 1U);
   EXPECT_EQ(z[0].unit, "m");
@@ -64,7 +64,7 @@ TEST_F(ChannelsTest, AStoneFallsAsTheBooksSay) {
     EXPECT_NEAR(z[0].values[k], -0.5 * 10.0 * 1e-4 * static_cast<double>(k * k), 1e-14);
 }
 
-TEST_F(ChannelsTest, ANameMeansAComponentAChannelOrAGroup) {
+TEST_F(ChannelsTest, ANameSelectsAComponentAChannelOrAGroup) {
   EXPECT_THAT(
       names("bodies.arm.velocity"),
       ElementsAre("bodies.arm.velocity.x", "bodies.arm.velocity.y", "bodies.arm.velocity.z"));
@@ -84,7 +84,7 @@ TEST_F(ChannelsTest, TheLengthOfASpringIsThatBetweenItsEnds) {
     EXPECT_NEAR(length[k], std::hypot(1.0 - std::cos(angle[k]), 1.0 + std::sin(angle[k])), 1e-12);
 }
 
-TEST_F(ChannelsTest, SaysWhichNameIsNearest) {
+TEST_F(ChannelsTest, SuggestsTheNearestName) {
   try {
     (void)names("bodies.amr.position");
     FAIL();
@@ -120,7 +120,7 @@ TEST_F(ChannelsTest, APictureHasACurveForEachColumn) {
   EXPECT_THROW((void)channels_svg(results(), {"bodies"}, "t [s]"), InputError);
 }
 
-TEST_F(ChannelsTest, AnAnimatedSceneHoldsTheMotion) {
+TEST_F(ChannelsTest, AnAnimatedSceneContainsTheMotion) {
   const ResultsReader r = results();
   const Model model = read_model_text(kModel, "model.yaml");
   const std::string glb = scene_glb(make_scene(r, &model));

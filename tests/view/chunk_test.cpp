@@ -12,7 +12,7 @@
 namespace polhode::chunk_tests {
 namespace {
 
-TEST(Chunk, GivesBackEveryBitOfSinglePrecision) {
+TEST(Chunk, RestoresEveryBitOfSinglePrecision) {
   std::vector<double> values;
   for (int i = 0; i < 300; ++i) values.push_back(std::sin(0.1 * i) * std::pow(10.0, i % 40 - 20));
   values[7] = std::numeric_limits<double>::infinity();

@@ -97,7 +97,7 @@ class SceneTest : public testing::Test {
   test::Scratch folder_;
 };
 
-TEST_F(SceneTest, HoldsEveryKindOfThing) {
+TEST_F(SceneTest, ContainsEveryKindOfObject) {
   const SceneData data = scene();
   const json m = json::parse(data.manifest);
   std::map<std::string, json> body;
@@ -132,7 +132,7 @@ TEST_F(SceneTest, HoldsEveryKindOfThing) {
   EXPECT_EQ(m["frames"], m["time"].size());
 }
 
-TEST_F(SceneTest, HoldsTheNumbersOfTheResults) {
+TEST_F(SceneTest, ContainsTheNumbersOfTheResults) {
   const SceneData data = scene();
   const json m = json::parse(data.manifest);
   const ResultsReader results(folder_ / "model.results/results.h5");
@@ -149,7 +149,7 @@ TEST_F(SceneTest, HoldsTheNumbersOfTheResults) {
   }
 }
 
-TEST_F(SceneTest, HoldsFieldsOfNodesAndElementsOfSolidsAsSeenFromOutside) {
+TEST_F(SceneTest, ContainsFieldsOnTheOuterFacesOfSolids) {
   const SceneData data = scene();
   const json m = json::parse(data.manifest), solid = m["solids"][0];
   const ResultsReader results(folder_ / "model.results/results.h5");
@@ -185,7 +185,7 @@ TEST_F(SceneTest, KeepsTheEnergyDriftThatSinglePrecisionWouldHide) {
   EXPECT_THAT(data.manifest, HasSubstr("\"energy/drift\""));
 }
 
-TEST_F(SceneTest, LeavesOutFramesWhereTheyAreTooMany) {
+TEST_F(SceneTest, LeavesOutFramesIfThereAreTooMany) {
   SceneOptions options;
   options.max_frames = 2;
   const SceneData data = scene(options);
@@ -194,7 +194,7 @@ TEST_F(SceneTest, LeavesOutFramesWhereTheyAreTooMany) {
   EXPECT_EQ(json::parse(data.manifest)["file_frames"], 4);
 }
 
-TEST_F(SceneTest, NoTextOfAModelEndsTheElementItStandsIn) {
+TEST_F(SceneTest, EscapesTextOfTheModelInThePage) {
   const std::string page = scene_page("<html><!--POLHODE-DATA--></html>", scene());
   const std::size_t begin = page.find("application/json"), end = page.find("</script>", begin);
   EXPECT_THAT(page.substr(begin, end - begin), HasSubstr("\\u003c/script>\\u003cb>"));
@@ -203,7 +203,7 @@ TEST_F(SceneTest, NoTextOfAModelEndsTheElementItStandsIn) {
   EXPECT_THROW((void)scene_page("no place", scene()), std::invalid_argument);
 }
 
-TEST_F(SceneTest, ShowsBodiesOfAModelThatIsLost) {
+TEST_F(SceneTest, ShowsBodiesWithoutTheModelFile) {
   const ResultsReader results(folder_ / "model.results/results.h5");
   const json m = json::parse(make_scene(results, nullptr).manifest);
   EXPECT_EQ(m["bodies"][2]["parts"].size(), 1U);

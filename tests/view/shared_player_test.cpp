@@ -45,7 +45,7 @@ std::string unpacked(const std::string& archive, std::size_t entry) {
   return bytes;
 }
 
-TEST(ZipArchive, GivesBackItsFiles) {
+TEST(ZipArchive, ReturnsItsFiles) {
   const std::vector<ZipEntry> files = {
       {"a.txt", "one"}, {"b/c.txt", std::string(100000, 'x') + "end"}, {"empty", ""}};
   const std::string archive = zip_archive(files);
@@ -69,7 +69,7 @@ const std::string kPage =
     "<meta content=\"script-src 'sha256-abc='; style-src 'x'\"><!--POLHODE-DATA-->"
     "<script>play()</script>\n<!--POLHODE-LATER--></body>";
 
-TEST(SharedPages, HaveOneScript) {
+TEST(SharedPages, ShareOneScript) {
   const std::vector<ZipEntry> files =
       shared_pages({{"one", "First <b>", kPage}, {"two", "Second", kPage}});
   ASSERT_EQ(files.size(), 4u);
@@ -86,7 +86,7 @@ TEST(SharedPages, HaveOneScript) {
                std::invalid_argument);
 }
 
-TEST(ScenePage, HasWhatIsComparedAndLaterNumbersBehindThePlayer) {
+TEST(ScenePage, HasTheComparedSceneBeforeAndLaterChunksAfterThePlayer) {
   SceneData scene, other;
   scene.manifest = other.manifest = "{}";
   scene.chunks = {"a", "b"};

@@ -46,7 +46,7 @@ Placement<double> at_rest(const Mat3& axes, int first) { return {Vec3::Zero(), a
 
 /// The sharp edges of the triangles stick out of the rounded ones, at an apex by some roundings. A
 /// rounded ellipsoid is slightly larger than its size.
-TEST_P(EveryRoundSolid, HasItsPicturesPointsOnItsSurface) {
+TEST_P(EveryRoundSolid, HasTheVerticesOfItsMeshOnItsSurface) {
   const Shape s = shape();
   const Mat3 still = Mat3::Identity();
   for (const Vec3& x : points()) {
@@ -73,7 +73,7 @@ TEST_P(EveryRoundSolid, HasChordsFromItsCentreToItsCore) {
       }
 }
 
-TEST_P(EveryRoundSolid, HasTheExtentOfItsPicture) {
+TEST_P(EveryRoundSolid, HasTheExtentOfItsMesh) {
   const Shape s = shape();
   const std::vector<Vec3> list = points();
   Random random(5);

@@ -43,7 +43,7 @@ Overrides overrides_of(const fs::path& path) {
   return overrides;
 }
 
-TEST(Corpus, HoldsAtLeastSixtyBrokenModels) { EXPECT_GE(models("broken").size(), 60U); }
+TEST(Corpus, ContainsAtLeastSixtyInvalidModels) { EXPECT_GE(models("broken").size(), 60U); }
 
 /// Mesh files are named as seen from the model's folder.
 class WorkingFolder {
@@ -59,7 +59,7 @@ class WorkingFolder {
   fs::path before_;
 };
 
-TEST(Corpus, BrokenModelsAreRefusedWithTheirMessages) {
+TEST(Corpus, InvalidModelsAreRefusedWithTheirMessages) {
   const WorkingFolder folder(kCorpus / "broken");
   for (const fs::path& path : models("broken")) {
     SCOPED_TRACE(path.filename().string());

@@ -63,7 +63,7 @@ TEST(ReadBeams, MakesBodiesSectionsAndJoints) {
   EXPECT_DOUBLE_EQ(m.cables[0].pieces[0].free_length, 1.0);
 }
 
-TEST(ReadBeams, RunsWhatItRead) {
+TEST(ReadBeams, MakesModelsThatRun) {
   Simulation s(read_model_text(kModel, "mast.yaml"));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
@@ -73,7 +73,7 @@ TEST(ReadBeams, RunsWhatItRead) {
 }
 
 // Rigid bodies, a solid with viscosity, a beam and a cable in one model.
-TEST(ReadBeams, GoTogetherWithSolidsAndBodies) {
+TEST(ReadBeams, CanBeCombinedWithSolidsAndBodies) {
   const std::string path = test::source_dir() + "/tests/corpus/good/plate_and_mast.yaml";
   Model model = read_model(path, {"analysis.duration=30 ms"});
   model.output.every = 30e-3;
@@ -89,7 +89,7 @@ TEST(ReadBeams, GoTogetherWithSolidsAndBodies) {
 
 // A solid whose face is bonded to the end of a beam and held by nothing else: the load on the
 // beam's end is the solid's weight.
-TEST(ReadBeams, HoldSolids) {
+TEST(ReadBeams, BondsSolidsToBeams) {
   constexpr const char* kText = R"(
 format: 1
 gravity: [0, 0, -10]
@@ -119,7 +119,7 @@ output: {every: 0.4, probes: {face: {solid: block, interface: rod.end}}}
   EXPECT_NEAR(s.beam(0).forces[2][0], block + 0.5 * element, 1e-3 * block);
 }
 
-TEST(ReadBeams, StartAsTheBodyThatHoldsThem) {
+TEST(ReadBeams, StartsBeamsWithTheVelocityOfTheirBody) {
   std::string text = kModel;
   text.replace(text.find("position: [0, 0, 100]"), 21,
                "position: [0, 0, 100], velocity: [7, 0, 0], angular_velocity: [0, 3, 0]");

@@ -110,7 +110,7 @@ Enum value_of(const FieldTable& table, const char* name, const char* word, Enum 
   return spec.*member;
 }
 
-TEST(ReadInto, TakesEachWordForItsValueOfTheEnumeration) {
+TEST(ReadInto, MapsEachWordToItsEnumerator) {
   const std::pair<const char*, Combination> ways[] = {
       {"geometric_mean", Combination::geometric_mean},
       {"mean", Combination::mean},
@@ -152,7 +152,7 @@ const FieldTable& trip_fields() {
   return table;
 }
 
-TEST(ReadInto, LeavesAbsentFieldsAndInvalidOnes) {
+TEST(ReadInto, DoesNotChangeAbsentOrInvalidFields) {
   Trip trip;
   EXPECT_EQ(read(trip_fields(), "legs: 5\nby_hand: 3\n", trip), "");
   EXPECT_EQ(trip.length, 1.0);

@@ -94,7 +94,7 @@ TEST(ReadModel, TurnsEulerAnglesAboutBodyOrWorldAxes) {
   EXPECT_NEAR((body.toRotationMatrix() - expected).norm(), 0.0, kRounding);
 }
 
-TEST(ReadModel, WeighsShapes) {
+TEST(ReadModel, ComputesMassPropertiesOfShapes) {
   const Model m = read(
       "bodies:\n"
       "  box: {shape: {box: [1, 2, 3]}, density: 10}\n"
@@ -160,7 +160,7 @@ TEST(ReadModel, MeasuresDistancesAtTheStart) {
   EXPECT_FALSE(m.joints[0].assembled_start);
 }
 
-TEST(ReadModel, HoldsFreedomsByAJointToGround) {
+TEST(ReadModel, LocksFreedomsByAJointToGround) {
   const Model m =
       read("bodies:\n  b: {mass: 1, inertia: [1, 1, 1], position: [1, 2, 3], hold: [rx, z]}\n");
   ASSERT_EQ(m.joints.size(), 1U);
@@ -196,7 +196,7 @@ TEST(ReadModel, AppliesOverrides) {
   EXPECT_EQ(read(text, {"gravity=[0, 0, -1]"}).gravity.z(), -1.0);
 }
 
-TEST(ReadModel, PointsToTheOverrideThatIsWrong) {
+TEST(ReadModel, LocatesAnInvalidOverride) {
   try {
     static_cast<void>(read(kTwo, {"bodies.a.mass=2 m"}));
     FAIL();
@@ -206,14 +206,14 @@ TEST(ReadModel, PointsToTheOverrideThatIsWrong) {
   }
 }
 
-TEST(ReadModel, TellsTheFaultsOfThePhysicsToo) {
+TEST(ReadModel, ReportsSettingsThatDoNotFitTogether) {
   EXPECT_EQ(first_fault(kTwo + "analysis: {order: 6, rho_inf: 0.5, step: 1}\n"),
             "analysis.order: order 6 cannot be combined with rho_inf 0.5");
   EXPECT_EQ(first_fault(kTwo + "analysis: {rho_inf: -0.1}\n"),
             "analysis.rho_inf: must lie in [0, 1], but is -0.1");
 }
 
-TEST(ReadModel, TellsWhenTheFileCannotBeRead) {
+TEST(ReadModel, ReportsAFileThatCannotBeRead) {
   EXPECT_THROW(static_cast<void>(read_model("no_such_folder/no_such_file.yaml")), FileError);
 }
 

@@ -91,7 +91,7 @@ class ReadParts : public testing::Test {
   test::Scratch folder_;
 };
 
-TEST_F(ReadParts, TakesOverNamesWithThePrefixAndJoinsAcross) {
+TEST_F(ReadParts, AddsPrefixesToNamesAndConnectsParts) {
   const Model m = whole(
       "  left: {file: arm.yaml, prefix: l_}\n"
       "  right: {file: arm.yaml, position: [0, 5, 0], variables: {L: 1.25}}\n",
@@ -141,7 +141,7 @@ void expect_same_motion(const Model& alone, const Model& placed, const Placed& p
   }
 }
 
-TEST_F(ReadParts, MoveAsTheyWouldAloneWhereverTheyStand) {
+TEST_F(ReadParts, MoveAsTheyWouldAloneWhereverTheyArePlaced) {
   const Model placed = whole(
       "  p: {file: arm.yaml, position: [3, -2, 1], orientation: {axis: [1, -1, 2], angle: 70 "
       "deg}}\n");
@@ -174,7 +174,7 @@ TEST_F(ReadParts, MirroredCoordinatesOfJointsWithOneFreedomStay) {
   EXPECT_NEAR(coordinates(second, "elbow")[0], coordinates(first, "elbow")[0], 1e-10);
 }
 
-TEST_F(ReadParts, NestAndKeepTheirPlaces) {
+TEST_F(ReadParts, NestAndKeepTheirSourceLocations) {
   write(folder_ / "pair.yaml",
         "format: 1\n"
         "parts:\n"
@@ -187,7 +187,7 @@ TEST_F(ReadParts, NestAndKeepTheirPlaces) {
   EXPECT_EQ(m.bodies[3].place.line, 4);
 }
 
-TEST_F(ReadParts, MayStandInTheFileItself) {
+TEST_F(ReadParts, MayBeWrittenInTheFileItself) {
   const Model m = whole(
       "  p:\n    position: [1, 0, 0]\n    model:\n      format: 1\n      units: {length: mm}\n"
       "      bodies: {ball: {shape: {sphere: [10]}, mass: 1, position: [0, 20, 0]}}\n");
@@ -195,7 +195,7 @@ TEST_F(ReadParts, MayStandInTheFileItself) {
   EXPECT_EQ(m.bodies[0].name, "p_ball");
 }
 
-TEST_F(ReadParts, FaultsStandInThePartsOwnFile) {
+TEST_F(ReadParts, LocatesErrorsInTheFileOfThePart) {
   write(folder_ / "bad.yaml",
         "format: 1\nbodies:\n  rod: {mass: 1, inertia: [1, 1, 1]}\njoints:\n"
         "  pin: {type: revolute, bodies: [ground, rot], at: [0, 0, 0], axis: y}\n");
@@ -208,7 +208,7 @@ TEST_F(ReadParts, FaultsStandInThePartsOwnFile) {
             faults("  p: {file: bad.yaml}\n"));
 }
 
-TEST_F(ReadParts, TellsWhatIsWrongWithAPart) {
+TEST_F(ReadParts, ReportsErrorsInAPart) {
   const auto starts = [](const std::string& text, const std::string& with) {
     EXPECT_EQ(text.substr(0, with.size()), with);
   };
@@ -237,7 +237,7 @@ TEST_F(ReadParts, CyclesAreFoundAcrossFiles) {
             "two.yaml:2:19: error: parts.y.file: 'one.yaml' is part of itself. Leave out ");
 }
 
-TEST_F(ReadParts, ContactMaterialsAreThoseOfTheWhole) {
+TEST_F(ReadParts, UsesContactMaterialsOfTheWholeModel) {
   write(folder_ / "ball.yaml",
         "format: 1\nbodies:\n  ball:\n    shape: {sphere: [1]}\n    mass: 1\n"
         "    contact: {material: ruber}\n");

@@ -25,7 +25,7 @@ TEST(TableFunction, HoldsTheEndValues) {
   EXPECT_EQ(f(10.0), 7.0);
 }
 
-TEST(TableFunction, IsStraightBetweenPointsOrSteps) {
+TEST(TableFunction, InterpolatesLinearlyOrInSteps) {
   EXPECT_EQ(TableFunction(kTimes, kValues, Interpolation::kLinear, false)(2.0), 0.0);
   EXPECT_EQ(TableFunction(kTimes, kValues, Interpolation::kStep, false)(2.9), 2.0);
 }

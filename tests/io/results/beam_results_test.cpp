@@ -102,7 +102,7 @@ std::string run_into(const std::string& folder, const std::string& text) {
 
 }  // namespace
 
-TEST(BeamResults, HoldNodesSectionForcesAndTensions) {
+TEST(BeamResults, ContainNodesSectionForcesAndTensions) {
   const test::Scratch scratch;
   const std::string folder = scratch / "out";
   const Model model = read_model_text(kModel, "mast.yaml");
@@ -145,7 +145,7 @@ TEST(BeamResults, HoldNodesSectionForcesAndTensions) {
   H5Fclose(file);
 }
 
-TEST(BeamResults, ProbesRecordElementsAndPieces) {
+TEST(BeamResults, RecordProbesOfElementsAndCablePieces) {
   const test::Scratch scratch;
   run_into(scratch / "out", kModel);
   const std::vector<std::string> top = lines_of(scratch / "out/probes/top.csv");
@@ -161,7 +161,7 @@ TEST(BeamResults, ProbesRecordElementsAndPieces) {
   EXPECT_NEAR(std::stod(pull[1].substr(2)), 0.0, 1e-9);
 }
 
-TEST(BeamResults, PicturesShowLinesWithTheirForces) {
+TEST(BeamResults, WriteLinesWithTheirForcesForParaview) {
   const test::Scratch scratch;
   run_into(scratch / "out", kModel);
   const std::string view = read_file(scratch / "out/paraview/lines/000004.vtp");
@@ -177,7 +177,7 @@ TEST(BeamResults, PicturesShowLinesWithTheirForces) {
   EXPECT_THAT(bodies, HasSubstr(R"(NumberOfPolys="12")"));  // the cube of the stone
 }
 
-TEST(BeamResults, RestartEndsInTheSameBits) {
+TEST(BeamResults, ContinueInTheSameBitsAfterARestart) {
   const test::Scratch scratch;
   std::string viscous = kModel;
   viscous.replace(viscous.find("density: 8000"), 13,
@@ -195,7 +195,7 @@ TEST(BeamResults, RestartEndsInTheSameBits) {
 
 // Section forces of cantilevers under their weight: at the foot of a horizontal one the weight as
 // shear and weight × L/2 as moment; the axial force of a vertical one is its weight.
-TEST(BeamResults, SectionForcesCarryTheWeight) {
+TEST(BeamResults, HaveSectionForcesThatBalanceTheWeight) {
   std::string text = kModel;
   const auto cut = [&](const char* from, const char* to) {
     const std::size_t at = text.find(from);
@@ -219,7 +219,7 @@ TEST(BeamResults, SectionForcesCarryTheWeight) {
   EXPECT_NEAR(s.joint(0).force.z(), weight, 1e-4 * weight);
 }
 
-TEST(BeamResults, WrongProbesAreTold) {
+TEST(BeamResults, ReportInvalidProbes) {
   Model model = read_model_text(kModel, "mast.yaml");
   const test::Scratch scratch;
   model.output.probes[1].element = 4;

@@ -88,7 +88,7 @@ struct Saved {
   Saved() { write_checkpoint(path, model, system, state); }
 };
 
-TEST(Checkpoint, GivesBackEveryBit) {
+TEST(Checkpoint, RestoresEveryBit) {
   const Saved s;
   const State back = read_checkpoint(s.path, s.model, s.system);
   EXPECT_EQ(state_bytes(s.system, back), state_bytes(s.system, s.state));
@@ -150,12 +150,12 @@ TEST(Checkpoint, RefusesADamagedFile) {
   EXPECT_THAT(message(future), HasSubstr("format that this version does not read"));
 }
 
-TEST(Checkpoint, SaysThatAFileIsMissing) {
+TEST(Checkpoint, ReportsAMissingFile) {
   const Saved s;
   EXPECT_THROW((void)read_checkpoint("no-such-file.pst", s.model, s.system), FileError);
 }
 
-TEST(Checkpoint, ReplacesAnOldOneAtOnce) {
+TEST(Checkpoint, ReplacesAnOldOneAtomically) {
   const Saved s;
   write_checkpoint(s.path, s.model, s.system, s.state);
   EXPECT_FALSE(std::filesystem::exists(s.path + ".tmp"));

@@ -46,7 +46,7 @@ output:
     ball: {body: ball}
 )";
 
-TEST(ContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
+TEST(ContactOutput, HasForcesImpulsesAndLossesByNewtonsLaws) {
   const test::Scratch scratch;
   Simulation simulation(read_model_text(kModel, "m.yaml"));
   const RunSummary summary = recorded_run(simulation, (scratch / "out"));
@@ -79,7 +79,7 @@ TEST(ContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
     EXPECT_TRUE(std::filesystem::exists(scratch / (std::string("out/") + file))) << file;
 }
 
-TEST(ContactOutput, TellsWhenASensorBeginsAndEnds) {
+TEST(ContactOutput, RecordsWhenASensorBeginsAndEnds) {
   const test::Scratch scratch;
   Simulation simulation(read_model_text(kModel, "m.yaml"));
   recorded_run(simulation, (scratch / "out"));
@@ -92,7 +92,7 @@ TEST(ContactOutput, TellsWhenASensorBeginsAndEnds) {
   EXPECT_NEAR(simulation.sensor_events()[1].t, std::sqrt(2 * 0.65 / 10), 6e-3);
 }
 
-TEST(ContactOutput, ARunGoesOnFromACheckpointBitForBit) {
+TEST(ContactOutput, ContinuesFromACheckpointBitForBit) {
   const test::Scratch scratch;
   Model model = read_model_text(kModel, "m.yaml");
   Simulation straight(model);
@@ -115,7 +115,7 @@ TEST(ContactOutput, ARunGoesOnFromACheckpointBitForBit) {
             read_file((scratch / "straight/events.csv")));
 }
 
-TEST(ContactOutput, ReactionsAndAccelerationsAtAnInstantTakeTheForcesOfContact) {
+TEST(ContactOutput, IncludesContactForcesInReactionsAndAccelerations) {
   // Creep of the block by its bristles, half a second after it stopped; it decreases with the step.
   for (const auto& [step, bound] : {std::pair{"5 ms", 1e-5}, {"0.5 ms", 1e-9}}) {
     Simulation simulation(

@@ -48,7 +48,7 @@ TEST(CsvTable, RefusesToContinueAnotherTable) {
   EXPECT_THROW(CsvTable(scratch / "p.csv", kHeader, 1.0), InputError);
 }
 
-TEST(CsvTable, SaysWhichFileItCannotWrite) {
+TEST(CsvTable, NamesTheFileItCannotWrite) {
   try {
     CsvTable table("/no/such/folder/p.csv", kHeader);
     FAIL() << "written";

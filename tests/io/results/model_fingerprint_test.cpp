@@ -110,7 +110,7 @@ TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
   }
 }
 
-TEST(ModelFingerprint, LeavesOutWhatARunMayBeContinuedWith) {
+TEST(ModelFingerprint, LeavesOutWhatMayChangeWhenARunIsContinued) {
   const std::string fingerprint = model_fingerprint(model_of_all());
   const std::function<void(Model&)> changes[] = {
       [](Model& m) { m.title = "again"; },      [](Model& m) { m.analysis.duration = 7.0; },
@@ -150,7 +150,7 @@ struct Change {
 };
 
 /// Fields of every table, so that a new one is covered.
-TEST(ModelFingerprint, ChangesWithEveryBoundFieldThatARunMayNotBeContinuedWith) {
+TEST(ModelFingerprint, ChangesWithEveryBoundFieldThatMayNotChange) {
   const std::string fingerprint = model_fingerprint(test::BoundSpecs().model());
   for (const FieldTable* table : all_field_tables())
     for (const Field& field : table->fields) {

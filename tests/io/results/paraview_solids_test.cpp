@@ -53,7 +53,7 @@ SolidReport report_of(const Mesh& mesh) {
   return report;
 }
 
-TEST(SolidsWriter, ShowsEverySolidWhereItIs) {
+TEST(SolidsWriter, WritesEverySolidAtItsPosition) {
   const test::Scratch scratch;
   const Mesh hex = make_mesh("hex", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 2}}}, "hex8");
   const Mesh wedge = make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
@@ -87,7 +87,7 @@ TEST(SolidsWriter, ShowsEverySolidWhereItIs) {
 
 /// Node order of VTK's cells of positive volume: the normal of the triangle 0 1 2 of a wedge points
 /// outwards.
-TEST(SolidsWriter, TurnsWedgesAsVtkWantsThem) {
+TEST(SolidsWriter, OrdersNodesOfWedgesAsVtkDoes) {
   const test::Scratch scratch;
   const Mesh wedge = make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
   SolidReport report = report_of(wedge);

@@ -60,7 +60,7 @@ BodyMotion quarter_turned() {
   return m;
 }
 
-TEST(Paraview, DrawsAPlaneAsASquareThatReachesBeyondAllBodies) {
+TEST(Paraview, DrawsAPlaneAsASquareLargerThanAllBodies) {
   Model model = two_bodies();
   model.bodies[1].position = {3.0, 4.0, 0.0};
   BodySpec floor;
@@ -118,7 +118,7 @@ TEST(ParaviewWriter, PutsShapesWhereTheBodiesAre) {
   EXPECT_THAT(vtp, HasSubstr("97 108 112 104 97 0 98 101 116 97 0"));  // alpha, beta
 }
 
-TEST(ParaviewWriter, ListsOnlyFilesThatAreThere) {
+TEST(ParaviewWriter, ListsOnlyFilesThatExist) {
   const test::Scratch scratch;
   ParaviewWriter writer(scratch / "view", "results", body_pictures(two_bodies(), 1.0));
   for (int k = 0; k < 3; ++k) {

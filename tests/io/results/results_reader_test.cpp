@@ -100,7 +100,7 @@ TEST(ResultsReader, ReadsAFileCutShortUpToItsLastWholeFrame) {
   EXPECT_GE(readable, 2);
 }
 
-TEST(ResultsReader, SaysWhatIsWrongWithAFile) {
+TEST(ResultsReader, ReportsErrorsInAFile) {
   const test::Scratch scratch;
   EXPECT_THAT(message_of(scratch / "missing.h5"), HasSubstr("cannot be read"));
   std::ofstream(scratch / "text.h5")

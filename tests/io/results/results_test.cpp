@@ -100,7 +100,7 @@ print(results["provenance"].attrs["version"], results["provenance/model"].asstr(
 }
 
 /// Data sets of joints with friction or limits; other joints have none.
-TEST(ResultsFile, HoldsFrictionAndStopsOfJoints) {
+TEST(ResultsFile, ContainsFrictionAndStopsOfJoints) {
   const test::Scratch scratch;
   ResultsLayout l = layout(1);
   l.joints = {{"free", "revolute", 1, 0, 0},
@@ -133,7 +133,7 @@ print([name for name in joints["free"]], "stops" in joints["pin"], "friction" in
 }
 
 /// Data sets of solids: nodes and elements of all solids in sequence, interfaces by name.
-TEST(ResultsFile, HoldsDeformableSolids) {
+TEST(ResultsFile, ContainsDeformableSolids) {
   const test::Scratch scratch;
   Mesh mesh;
   mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -186,7 +186,7 @@ print(pad["interfaces/b0/force"][1], pad["interfaces/lid/moment"][2], pad["nodes
             "[1. 2. 3.] [ 4.  5. 12.] Pa\n");
 }
 
-TEST(ResultsFile, ContinuesAtATimeAndDropsWhatCameLater) {
+TEST(ResultsFile, ContinuesAtATimeAndDropsLaterFrames) {
   const test::Scratch scratch;
   const ResultsLayout l = layout(2);
   {
@@ -213,7 +213,7 @@ TEST(ResultsFile, RefusesToContinueTheResultsOfAnotherModel) {
   }
 }
 
-TEST(ResultsFile, SaysWhichFileItCannotWrite) {
+TEST(ResultsFile, NamesTheFileItCannotWrite) {
   try {
     ResultsFile file("/no/such/folder/results.h5", layout(1), {});
     FAIL() << "written";
@@ -222,7 +222,7 @@ TEST(ResultsFile, SaysWhichFileItCannotWrite) {
   }
 }
 
-TEST(ResultsFile, HoldsAModelWithoutJointsAndLoads) {
+TEST(ResultsFile, ContainsAModelWithoutJointsAndLoads) {
   const test::Scratch scratch;
   ResultsLayout l = layout(1);
   l.joints.clear();

@@ -44,7 +44,7 @@ output:
     head: {contact: [ball, block], every: 1 us}
 )";
 
-TEST(SurfaceContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
+TEST(SurfaceContactOutput, HasForcesImpulsesAndLossesByNewtonsLaws) {
   const test::Scratch scratch;
   Simulation simulation(read_model_text(kModel, "m.yaml"));
   const RunSummary summary = recorded_run(simulation, scratch / "out");
@@ -88,7 +88,7 @@ TEST(SurfaceContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
     EXPECT_TRUE(std::filesystem::exists(scratch / (std::string("out/") + file))) << file;
 }
 
-TEST(SurfaceContactOutput, ARunGoesOnFromACheckpointBitForBit) {
+TEST(SurfaceContactOutput, ContinuesFromACheckpointBitForBit) {
   const test::Scratch scratch;
   const Model model = read_model_text(kModel, "m.yaml");
   Simulation straight(model);

@@ -27,7 +27,7 @@ TEST(Schema, NamesEveryFieldWithItsMeaning) {
   }
 }
 
-TEST(Schema, DefinesWhatItRefersTo) {
+TEST(Schema, DefinesAllItsReferences) {
   const std::string schema = json_schema();
   const std::string mark = "\"#/$defs/";
   for (std::size_t k = schema.find(mark); k != std::string::npos; k = schema.find(mark, k + 1)) {

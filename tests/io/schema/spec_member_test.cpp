@@ -53,13 +53,13 @@ TEST(SpecMember, RefusesAnotherSpec) {
 }
 
 /// Other specs would be skipped by the tests of all bound fields.
-TEST(SpecMember, BelongsToOneOfTheSpecsThatAreTested) {
+TEST(SpecMember, BelongsToOneTestedSpec) {
   for (const FieldTable* table : all_field_tables())
     for (const Field& field : table->fields)
       EXPECT_EQ(test::owners(field), field.member ? 1 : 0) << table->title << ' ' << field.name;
 }
 
-TEST(SpecMember, IsThatOfOneFieldInEachTable) {
+TEST(SpecMember, IsBoundToAtMostOneFieldOfATable) {
   for (const FieldTable* table : all_field_tables())
     test::BoundSpecs().each([&]<class Spec>(Spec& spec) {
       std::vector<SpecValue> members;

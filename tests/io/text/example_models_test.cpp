@@ -72,7 +72,7 @@ TEST(ModelGenerators, BranchTheTreeInTwo) {
     EXPECT_EQ(model.joints[static_cast<std::size_t>(i)].a, (i - 1) / 2) << "rod " << i;
 }
 
-TEST(ModelGenerators, RefuseWhatTheyDoNotKnow) {
+TEST(ModelGenerators, RefuseUnknownParametersAndInvalidValues) {
   const ModelGenerator& chain = model_generators()[1];
   const auto message = [&](const std::map<std::string, std::string>& values) -> std::string {
     try {

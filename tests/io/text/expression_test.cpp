@@ -45,7 +45,7 @@ TEST(Expression, FollowsTheUsualPrecedence) {
   EXPECT_EQ(value(".5"), 0.5);
 }
 
-TEST(Expression, KnowsTheFunctionsItLists) {
+TEST(Expression, EvaluatesAllListedFunctions) {
   EXPECT_DOUBLE_EQ(value("sin(pi/6)"), std::sin(kPi / 6));
   EXPECT_DOUBLE_EQ(value("atan2(1, -1)", dimensions::kAngle), std::atan2(1.0, -1.0));
   EXPECT_DOUBLE_EQ(value("sqrt(2)*exp(1) + log(3) - log10(5)"),
@@ -54,7 +54,7 @@ TEST(Expression, KnowsTheFunctionsItLists) {
   EXPECT_EQ(value("pow(2, 10)"), 1024.0);
 }
 
-TEST(Expression, TakesAUnitBehindItself) {
+TEST(Expression, TakesAUnitAfterAnExpression) {
   EXPECT_DOUBLE_EQ(value("30 deg", dimensions::kAngle), kPi / 6);
   EXPECT_DOUBLE_EQ(value("2*pi rad/s", dimensions::kAngularVelocity), 2 * kPi);
   EXPECT_DOUBLE_EQ(value("5 N/mm", dimensions::kStiffness), 5e3);
@@ -77,7 +77,7 @@ TEST(Expression, ChecksDimensions) {
   EXPECT_EQ(fault_of("2^L", v), "the exponent is a length");
 }
 
-TEST(Expression, LetsBareVariablesMeanWhatTheyAreUsedFor) {
+TEST(Expression, InfersUnitsOfVariablesFromTheirUse) {
   const UnitSystem mm{.length = 1e-3};
   const Variables v = {{"L", bare(100.0)},
                        {"w", known(2.0, dimensions::kAngularVelocity)},
@@ -90,7 +90,7 @@ TEST(Expression, LetsBareVariablesMeanWhatTheyAreUsedFor) {
   EXPECT_DOUBLE_EQ(value("d*L", {2, 0, 0, 0}, mm, v), 0.02 * 0.1);
 }
 
-TEST(Expression, CountsAnglesInRadiansOnceAUnitBringsThemIn) {
+TEST(Expression, UsesRadiansWhereAUnitContainsAnAngle) {
   const UnitSystem deg{.angle = kPi / 180.0};
   const Variables v = {{"a", bare(30.0)},
                        {"w", known(2.0, dimensions::kAngularVelocity)},
@@ -105,14 +105,14 @@ TEST(Expression, CountsAnglesInRadiansOnceAUnitBringsThemIn) {
   EXPECT_DOUBLE_EQ(value("sin(q)", dimensions::kNone, deg, v), 0.5);
 }
 
-TEST(Expression, CountsTimeInTheFilesUnit) {
+TEST(Expression, HasTimeInTheUnitOfTheFile) {
   const UnitSystem ms{.time = 1e-3};
   EXPECT_DOUBLE_EQ(value("t", dimensions::kNone, ms, {}, 0.005), 5.0);
   const Variables v = {{"T", known(1.0, dimensions::kTime)}};
   EXPECT_DOUBLE_EQ(value("sin(2*pi*t/T)", dimensions::kNone, ms, v, 0.125), std::sin(kPi / 4));
 }
 
-TEST(Expression, TellsWhereItIsWrong) {
+TEST(Expression, LocatesItsErrors) {
   ExpressionFault fault;
   EXPECT_FALSE(Expression::parse("1 + foo(2)", {}, {}, false, fault));
   EXPECT_EQ(fault.offset, 4U);
@@ -122,7 +122,7 @@ TEST(Expression, TellsWhereItIsWrong) {
   EXPECT_EQ(fault_of("3kg"), "'3kg' lacks a space before the unit");
 }
 
-TEST(Expression, RefusesWhatIsTooDeepOrTooLong) {
+TEST(Expression, RefusesTextThatIsTooDeepOrTooLong) {
   EXPECT_EQ(fault_of(std::string(2000, '(') + "1"), "the expression is too deeply nested");
   EXPECT_EQ(fault_of(std::string(2000, '-') + "1"), "the expression is too deeply nested");
   EXPECT_EQ(fault_of(std::string(5000, '1')), "the expression is longer than 4096 characters");

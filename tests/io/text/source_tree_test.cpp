@@ -15,7 +15,7 @@ std::string fault_of(const std::string& text) {
   return "";
 }
 
-TEST(SourceTree, KeepsEveryPlace) {
+TEST(SourceTree, KeepsTheLocationOfEveryNode) {
   const SourceTree tree = SourceTree::parse("a:\n  b: [1, {c: x}]\n", "m.yaml");
   const SourceNode* b = tree.root().find("a")->find("b");
   EXPECT_EQ(tree.root().find("a")->keys[0].column, 3);
@@ -26,7 +26,7 @@ TEST(SourceTree, KeepsEveryPlace) {
   EXPECT_EQ(tree.place_of(*b).file, "m.yaml");
 }
 
-TEST(SourceTree, ReadsJsonAndWindowsLineEnds) {
+TEST(SourceTree, ReadsJsonAndWindowsLineEndings) {
   const SourceTree tree = SourceTree::parse("\xEF\xBB\xBF{\"a\": [1,\r\n\"b\"]}\r\n", "m.json");
   EXPECT_EQ(tree.root().find("a")->children[1].text, "b");
   EXPECT_EQ(tree.root().find("a")->children[1].line, 2);
@@ -38,7 +38,7 @@ TEST(SourceTree, AllowsOneDocumentWithItsMarkers) {
   EXPECT_EQ(fault_of("a: 1\n---\nb: 2\n"), "a second document starts here");
 }
 
-TEST(SourceTree, RefusesWhatStrictFilesDoNotHave) {
+TEST(SourceTree, RefusesYamlFeaturesOutsideTheSubset) {
   EXPECT_EQ(fault_of("a: &x 1\n"), "anchors (&name) are not allowed");
   EXPECT_EQ(fault_of("a: *x\n"), "aliases (*name) are not allowed");
   EXPECT_EQ(fault_of("a: !t 1\n"), "tags (!name) are not allowed");
@@ -51,7 +51,7 @@ TEST(SourceTree, RefusesWhatStrictFilesDoNotHave) {
   EXPECT_EQ(fault_of("a: \"\\\"\"\n"), "");
 }
 
-TEST(SourceTree, RefusesBytesThatAreNoText) {
+TEST(SourceTree, RefusesBytesThatAreNotUtf8Text) {
   EXPECT_EQ(fault_of("a: \x80"), "the text is not UTF-8");
   EXPECT_EQ(fault_of("a: \xED\xA0\x80"), "the text is not UTF-8");  // A surrogate.
   EXPECT_EQ(fault_of("a: \xC0\x80"), "the text is not UTF-8");      // Overlong.

@@ -61,7 +61,7 @@ TEST(ExpressionBreaks, AreThoseOfFunctionsWithBranches) {
   expect_breaks("max(0, sin(t))^2", 7.0, {std::numbers::pi, 2.0 * std::numbers::pi}, 1);
 }
 
-TEST(ExpressionBreaks, AreNotMissedHoweverShortThePulse) {
+TEST(ExpressionBreaks, IncludeVeryShortPulses) {
   for (const double length : {1e-1, 1e-3, 1e-6, 1e-9}) {
     const std::string text =
         "t > 612.3 && t < 612.3 + " + std::to_string(length * 1e10) + "e-10 ? 1 : 0";
@@ -69,14 +69,14 @@ TEST(ExpressionBreaks, AreNotMissedHoweverShortThePulse) {
   }
 }
 
-TEST(ExpressionBreaks, AreNoneWhereNothingTakesOver) {
+TEST(ExpressionBreaks, AreAbsentWhereNoBranchChanges) {
   for (const char* text : {"sin(100*t)", "t^2 - 3*t", "abs(t^2 + 1)", "abs((t - 1)^2)", "max(t, t)",
                            "min(t^2 - 2*t + 1.5, 0)", "exp(-((t - 5)/0.01)^2)", "t > -1 ? 1 : 0"})
     EXPECT_FALSE(expression(text)->next_break(0.0, 10.0).exists()) << text;
 }
 
 /// A continued run starts its search at another time and must find bitwise the same breaks.
-TEST(ExpressionBreaks, DoNotHangOnWhereTheSearchBegins) {
+TEST(ExpressionBreaks, DoNotDependOnTheStartOfTheSearch) {
   const auto f = expression("sin(17*t) > 0.3 ? 1 : t");
   for (const TimeBreak& b : breaks(*f, 20.0))
     for (const double before : {1e-3, 0.01, 0.0371})

@@ -21,7 +21,7 @@ void expect_unit(const char* text, double factor, const Dimension& dimension) {
   EXPECT_EQ(reading.unit->dimension.angle, dimension.angle) << text;
 }
 
-TEST(Units, KnowTheirSizeInSi) {
+TEST(Units, HaveTheirFactorsToSi) {
   using namespace dimensions;
   expect_unit("mm", 1e-3, kLength);
   expect_unit("kg", 1.0, kMass);
@@ -49,7 +49,7 @@ TEST(Units, AreComposedOfFactorsAndPowers) {
   expect_unit("m s^-2", 1.0, kAcceleration);
 }
 
-TEST(Units, AreRefusedWhenTheyAreNotClear) {
+TEST(Units, AreRefusedWhenTheyAreAmbiguousOrMalformed) {
   EXPECT_FALSE(read_unit("kg/m s").unit);
   EXPECT_FALSE(read_unit("").unit);
   EXPECT_FALSE(read_unit("m^").unit);

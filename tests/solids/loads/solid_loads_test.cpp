@@ -61,7 +61,7 @@ struct Closed {
 class ClosedSurface : public testing::TestWithParam<std::string> {};
 
 // @tests{solid-follower-pressure}
-TEST_P(ClosedSurface, FeelsNoMomentByOneRuleAndExactWorkByTheOther) {
+TEST_P(ClosedSurface, HasNoMomentByOneRuleAndExactWorkByTheOther) {
   Closed cell(GetParam());
   SolidStep step(cell.X, context_of(1.0));
   step.move_at_random(cell.random, 0.1, 0.3);
@@ -114,7 +114,7 @@ TEST_P(ClosedSurface, HasTheTangentOfItsForces) {
     }
 }
 
-TEST_P(ClosedSurface, IsLoadedByItsAreaAndNotMovedByAPressure) {
+TEST_P(ClosedSurface, HasTheResultantsOfTractionAndPressure) {
   Closed cell(GetParam());
   SolidStep step(cell.X, context_of(1.0));
   step.move_at_random(cell.random, 0.1);
@@ -144,7 +144,7 @@ TEST_P(ClosedSurface, IsLoadedByItsAreaAndNotMovedByAPressure) {
   EXPECT_NEAR(at_rest.dot(rest.x_n), -3.0 * 3.0 * cell.volume(rest.x_n), 1e-12 * 72.0);
 }
 
-TEST_P(ClosedSurface, HasNodesThatShareTheWeightOfItsVolume) {
+TEST_P(ClosedSurface, DistributesTheWeightOfItsVolumeOverItsNodes) {
   Closed cell(GetParam());
   std::vector<int> connectivity;
   for (int i = 0; i < cell.kind.sizes().nodes; ++i) connectivity.push_back(i);
@@ -186,7 +186,7 @@ TEST(SolidLoads, PutTheSameForceOnEveryNode) {
   EXPECT_EQ(force.norm(), std::sqrt(32.0));
 }
 
-TEST(SolidLoads, AreRefusedWithoutAnythingToLoad) {
+TEST(SolidLoads, AreRefusedWithoutFacesOrNodes) {
   const std::vector<Vec3> X(4, Vec3::Zero());
   EXPECT_THROW(make_traction("loads.t", {}, X, {}), InputError);
   EXPECT_THROW(make_nodal_force("loads.f", {}, X, {}), InputError);

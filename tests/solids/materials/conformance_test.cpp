@@ -41,7 +41,7 @@ TEST_P(EveryMaterial, IsFreeOfStressAndEnergyAtRest) {
   EXPECT_EQ(strain_energy(*material_, Vec6::Zero(), A_), 0.0);
 }
 
-TEST_P(EveryMaterial, HasTheModuliAtRestThatItTells) {
+TEST_P(EveryMaterial, HasTheStatedLinearModuliAtRest) {
   if (material_->has_fibres()) GTEST_SKIP() << "fibres resist in tension only";
   const LinearModuli m = material_->linear();
   Mat6 D = Mat6::Zero();
@@ -55,7 +55,7 @@ TEST_P(EveryMaterial, HasTheModuliAtRestThatItTells) {
 
 // @tests{solid-discrete-invariants} @tests{solid-discrete-stress} @tests{solid-fibre-stress}
 // @tests{solid-discrete-volume} @tests{solid-log-difference}
-TEST_P(EveryMaterial, GivesBackExactlyWhatItStoresInStepsOfAnySize) {
+TEST_P(EveryMaterial, ReturnsExactlyTheEnergyItStoresInStepsOfAnySize) {
   Random random(1);
   for (const double start : {0.0, 1e-3, 0.3})
     for (const double step : {0.3, 0.05, 1e-3, 1e-6, 1e-9})
@@ -118,7 +118,7 @@ TEST_P(EveryMaterial, HasASymmetricTangentWhenNothingMoves) {
   EXPECT_LT((D - D.transpose()).norm(), 1e-14 * D.norm());
 }
 
-TEST_P(EveryMaterial, DoesNotMindWhichEndComesFirst) {
+TEST_P(EveryMaterial, HasAStressSymmetricInBothEnds) {
   Random random(5);
   const Vec6 E_0 = strain(random, 0.2), E_1 = strain(random, 0.2);
   const Vec6 there = discrete_stress(*material_, E_0, E_1, A_).S;
@@ -126,7 +126,7 @@ TEST_P(EveryMaterial, DoesNotMindWhichEndComesFirst) {
   EXPECT_LT((there - back).norm(), 1e-14 * modulus_);
 }
 
-TEST_P(EveryMaterial, SaysThatAnInvertedVolumeIsNoNumber) {
+TEST_P(EveryMaterial, HasNoFiniteEnergyInAnInvertedVolume) {
   Vec6 flat = Vec6::Zero();
   flat[0] = -0.5;
   if (GetParam().kind == "elastic") GTEST_SKIP() << "its energy does not depend on the volume";
@@ -148,7 +148,7 @@ TEST(NeoHookean, HasTheStressOfTheTextbook) {
   EXPECT_LT((discrete_stress(*m, E, E).S - voigt(S)).norm(), 1e-14 * S.norm());
 }
 
-TEST(MooneyRivlinUncoupled, HasAStressOfShapeThatDoesNotPressAndAPressureOfVolume) {
+TEST(MooneyRivlinUncoupled, SplitsStressIntoDeviatorAndPressure) {
   const auto m = make_material("m", {.kind = "mooney_rivlin_uncoupled",
                                      .values = {{"c1", 3e5}, {"c2", 2e5}, {"bulk_modulus", 1e9}}});
   Mat3 F;

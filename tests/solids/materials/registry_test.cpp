@@ -31,7 +31,7 @@ TEST(MaterialRegistry, TakesYoungsModulusOrOtherPairs) {
   EXPECT_NEAR(a->linear().shear, b->linear().shear, 1e-4);
 }
 
-TEST(MaterialRegistry, RefusesValuesThatNoMaterialHas) {
+TEST(MaterialRegistry, RefusesImpossibleValues) {
   EXPECT_THAT(
       make({.kind = "elastic", .values = {{"youngs_modulus", -1.0}, {"poisson_ratio", 0.3}}}),
       refused("'youngs_modulus' is -1 Pa", "positive"));
@@ -48,7 +48,7 @@ TEST(MaterialRegistry, RefusesValuesThatNoMaterialHas) {
               refused("shear modulus 2 (c1 + c2) is -2 Pa"));
 }
 
-TEST(MaterialRegistry, NamesWhatIsMissingUnknownOrTooMuch) {
+TEST(MaterialRegistry, NamesMissingUnknownAndSuperfluousValues) {
   EXPECT_THAT(make({.kind = "elastic", .values = {}}), refused("missing", "youngs_modulus"));
   EXPECT_THAT(make({.kind = "elastic", .values = {{"youngs_modulus", 1.0}}}),
               refused("alone", "poisson_ratio"));

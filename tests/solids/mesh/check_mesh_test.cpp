@@ -42,7 +42,7 @@ TEST(CheckMesh, NamesInvertedElements) {
   }
 }
 
-TEST(CheckMesh, SeesAnElementThatIsInvertedAtOneNodeOnly) {
+TEST(CheckMesh, DetectsAnElementThatIsInvertedAtOneNodeOnly) {
   Mesh mesh = make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "hex20");
   // A middle node beyond the quarter of its edge folds the edge over.
   const int middle = mesh.blocks[0].nodes[8], corner = mesh.blocks[0].nodes[0];
@@ -50,7 +50,7 @@ TEST(CheckMesh, SeesAnElementThatIsInvertedAtOneNodeOnly) {
   EXPECT_THROW(check_mesh(mesh), InputError);
 }
 
-TEST(CheckMesh, NotesPiecesAndNodesThatCoincide) {
+TEST(CheckMesh, ReportsSeparatePiecesAndCoincidentNodes) {
   const Mesh mesh = both(block(1), block(2, 1.5));
   EXPECT_THAT(
       check_mesh(mesh),
@@ -61,7 +61,7 @@ TEST(CheckMesh, NotesPiecesAndNodesThatCoincide) {
           "element 2. Merge duplicate nodes if they are one, or constrain every piece."));
 }
 
-TEST(CheckMesh, NotesNodesOfNoElement) {
+TEST(CheckMesh, ReportsNodesOfNoElement) {
   Mesh mesh = block(1);
   mesh.nodes.emplace_back(5, 5, 5);
   EXPECT_THAT(check_mesh(mesh),

@@ -169,7 +169,7 @@ TEST(LineMesh, RunsThroughItsPoints) {
   EXPECT_THAT(curved.blocks[0].nodes, testing::ElementsAre(0, 2, 1, 2, 4, 3));
 }
 
-TEST(MakeMesh, SaysWhatIsWrongWithItsParameters) {
+TEST(MakeMesh, ReportsInvalidParameters) {
   const auto message = [](const char* generator, MeshParameters parameters, const char* type) {
     try {
       (void)make_mesh("solids.pad.mesh", generator, parameters, type);

@@ -56,7 +56,7 @@ TEST(ReadAbaqus, GathersSets) {
 }
 
 // Each face by its Abaqus name and its position on a unit cube, a tetrahedron, a wedge.
-TEST(ReadAbaqus, KnowsTheFacesOfSolids) {
+TEST(ReadAbaqus, NumbersTheFacesOfSolids) {
   const auto middle = [](const Mesh& mesh, const char* name) {
     const Surface& surface = mesh.surfaces.at(name);
     Vec3 sum = Vec3::Zero();
@@ -117,7 +117,7 @@ TEST(ReadAbaqus, ReadsOnePartInPlace) {
             "or one part by itself.");
 }
 
-TEST(ReadAbaqus, LocatesWhatItRefuses) {
+TEST(ReadAbaqus, LocatesErrors) {
   EXPECT_EQ(message(two_bricks("*INCLUDE, INPUT=more.inp\n")),
             "part.inp:24:1: *INCLUDE is not supported, and the mesh depends on it. Write the nodes "
             "and elements out in one file.");
@@ -159,7 +159,7 @@ TEST(ReadAbaqus, LocatesWhatItRefuses) {
 }
 
 // A set that contains itself would double with every line.
-TEST(ReadAbaqus, KeepsSetsOfSetsSmall) {
+TEST(ReadAbaqus, MergesNestedSetsWithoutDuplicates) {
   std::string text = two_bricks("*NSET, NSET=a\n100, 101\n*NSET, NSET=a\n");
   for (int i = 0; i < 100; ++i) text += "a, a, a, a, a, a, a, a\n";
   EXPECT_THAT(parse_mesh("part.inp", text).node_sets.at("a"), ElementsAre(0, 1));

@@ -67,7 +67,7 @@ TEST_P(MeshFile, HasElementsOfItsType) {
 }
 
 // A misplaced node would not be in the middle of its edge, face or cell.
-TEST_P(MeshFile, HasEveryNodeWhereTheShapeHasIt) {
+TEST_P(MeshFile, HasItsNodesAtTheirPositions) {
   const CellShape& shape = mesh_.blocks[0].shape();
   const CellShape& linear = cell_shape(shape.corners == 8   ? "hex8"
                                        : shape.corners == 4 ? "tet4"
@@ -150,7 +150,7 @@ TEST_P(MeshFile, CutShortIsRefused) {
 }
 
 // Bytes overwritten at positions of a fixed rule: the result is a mesh or an InputError.
-TEST_P(MeshFile, DamagedDoesNoHarm) {
+TEST_P(MeshFile, DamagedIsReadOrRefused) {
   const std::string bytes = bytes_of(GetParam());
   std::uint32_t random = 12345;
   for (int trial = 0; trial < 300; ++trial) {
@@ -177,7 +177,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& one) {
 INSTANTIATE_TEST_SUITE_P(Files, MeshFile, testing::ValuesIn(files()), test_name);
 
 // Files on which fuzzers once found failures.
-TEST(ReadMesh, WithstandsWhatFuzzersFound) {
+TEST(ReadMesh, ReadsOrRefusesFilesFoundByFuzzers) {
   int inputs = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(test::source_dir() + "/tests/fuzz/found_in_meshes")) {
@@ -202,7 +202,7 @@ TEST(ReadMesh, ScalesToMetres) {
   EXPECT_THROW((void)read_mesh(folder() + "/hex8_4_text.msh", 0.0), InputError);
 }
 
-TEST(ReadMesh, SaysWhichFilesItReads) {
+TEST(ReadMesh, ListsTheFileTypesItReads) {
   const auto message = [](const std::string& path) {
     try {
       (void)read_mesh(path);

@@ -88,7 +88,7 @@ TEST(Selection, TakesFacesOfTheBoundaryThatFaceOutward) {
   }
 }
 
-TEST(Selection, ThatHoldsNothingTellsTheExtentOfTheMesh) {
+TEST(Selection, ReportsTheExtentOfTheMeshIfItIsEmpty) {
   const Mesh mesh = cube();
   const auto message = [&](const Selection& s, bool of_faces) {
     try {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <polhode/statics/clarke_combination.hpp>
 
-namespace polhode::kink_mixture_tests {
+namespace polhode::clarke_combination_tests {
 namespace {
 
 Vec vec(std::initializer_list<double> numbers) {
@@ -16,7 +16,7 @@ Vec vec(std::initializer_list<double> numbers) {
 
 /// Residuals on two sides of a roof: components across the ridge cancel, those along it remain.
 /// @tests{statics-kink}
-TEST(ClarkeCombination, BalancesTwoSidesOfARoof) {
+TEST(ClarkeCombination, CancelsOppositeComponentsAtAKink) {
   ClarkeCombination kinks;
   kinks.add(vec({0.0, 2.0, 0.5}));
   EXPECT_EQ(kinks.shortest(), vec({0.0, 2.0, 0.5}));
@@ -25,7 +25,7 @@ TEST(ClarkeCombination, BalancesTwoSidesOfARoof) {
 }
 
 /// Forces of one sign do not cancel: the shorter one is the minimum.
-TEST(ClarkeCombination, DoesNotBalanceWhatPushesOneWay) {
+TEST(ClarkeCombination, DoesNotCancelResidualsOfOneSign) {
   ClarkeCombination kinks;
   kinks.add(vec({3.0, 0.0}));
   kinks.add(vec({1.0, 0.0}));
@@ -36,7 +36,7 @@ TEST(ClarkeCombination, DoesNotBalanceWhatPushesOneWay) {
 }
 
 /// Against a fine grid of all convex combinations of four residuals; the oldest of five is dropped.
-TEST(ClarkeCombination, IsTheShortestOfAll) {
+TEST(ClarkeCombination, IsTheShortestConvexCombination) {
   for (int seed = 0; seed < 20; ++seed) {
     std::vector<Vec> all;
     ClarkeCombination kinks;
@@ -61,11 +61,11 @@ TEST(ClarkeCombination, IsTheShortestOfAll) {
 }
 
 /// Equal residuals, given twice.
-TEST(ClarkeCombination, StandsEqualResiduals) {
+TEST(ClarkeCombination, HandlesEqualResiduals) {
   ClarkeCombination kinks;
   for (int k = 0; k < 4; ++k) kinks.add(vec({k % 2 == 0 ? 1e-9 : -3e-9, 0.0}));
   EXPECT_LT(kinks.shortest().norm(), 1e-20);
 }
 
 }  // namespace
-}  // namespace polhode::kink_mixture_tests
+}  // namespace polhode::clarke_combination_tests
