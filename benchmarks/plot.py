@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws docs/images/work_precision_*.png and renews the tables of docs/benchmarks.md from results of run.py.
+"""Draws docs/images/work_precision_*.png and updates the tables of docs/benchmarks.md from results of run.py.
 
     python3 benchmarks/plot.py [NAME.json]
 
-Needs matplotlib. Left out, the name is that of the newest results.
+Needs matplotlib. Without a name, the newest results are used.
 """
 import argparse
 import pathlib
@@ -20,7 +20,7 @@ import report
 ROOT = report.HERE.parent
 PAGE = ROOT / "docs/benchmarks.md"
 IMAGES = ROOT / "docs/images"
-STYLES = {  # of a curve for each order
+STYLES = {  # of the curve of each order
     "2": dict(color="#7a7a7a", marker="o"), "4": dict(color="#2f8f5b", marker="s"),
     "6": dict(color="#1f5fa8", marker="^"), "8": dict(color="#b03a2e", marker="D"),
     "automatic": dict(color="#1f5fa8", marker="x", linestyle=":")}
@@ -28,12 +28,12 @@ PEER_MARKERS = {"Exudyn 1.11": "P", "MuJoCo": "*", "Simbody": "X", "Chrono": "p"
 
 
 def draw(results, case):
-    """A picture of error against CPU time; returns its path, or None if there is nothing to draw."""
+    """Draws error against CPU time and returns the path of the picture."""
     title, compared = report.CASES[case]
     figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
     for order in report.ORDERS:
         runs = results.of("work_precision", case=case, order=order)
-        if order != "automatic":  # A step that had to be halved is no point of the curve.
+        if order != "automatic":  # Runs with rejected steps do not have the given step.
             runs = [r for r in runs if not r["rejected_steps"]]
         if runs:
             label = "automatic steps" if order == "automatic" else f"order {order}"
@@ -57,7 +57,7 @@ def draw(results, case):
 
 
 def precision_sections(results):
-    """A section for each case that was run: picture, own table, peers."""
+    """A section for each case that was run: picture, table of Polhode, table of other programs."""
     text = []
     for case, (title, compared) in report.CASES.items():
         if not results.of("work_precision", case=case):
@@ -68,12 +68,12 @@ def precision_sections(results):
                  report.reference_line(results, case)]
         beside = report.peer_table(results, case)
         if beside:
-            text += ["Other programs, and what we need for their error:", beside]
+            text += ["Other programs, and the CPU time of Polhode for the same error:", beside]
     return "\n\n".join(text)
 
 
-def renew(text, name, content):
-    """Replaces what stands between the marks of a generated part."""
+def replace_section(text, name, content):
+    """Replaces the text between the comments that enclose a generated section."""
     pattern = rf"(<!-- {name}: written by benchmarks/plot.py -->\n).*?(<!-- end of {name} -->)"
     return re.sub(pattern, lambda m: m[1] + "\n" + content + "\n\n" + m[2], text, flags=re.S)
 
@@ -89,9 +89,9 @@ def main():
     for name, content in (("machine", report.machine_line(results)), ("targets", report.target_table(results)),
                           ("elimination", report.elimination_table(results)),
                           ("work and precision", precision_sections(results))):
-        text = renew(text, name, content)
+        text = replace_section(text, name, content)
     PAGE.write_text(text)
-    print(f"{PAGE.relative_to(ROOT)} and docs/images/work_precision_*.png renewed from {pathlib.Path(path).name}")
+    print(f"{PAGE.relative_to(ROOT)} and docs/images/work_precision_*.png updated from {pathlib.Path(path).name}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Helpers for the pictures of the examples: runs, outlines, sheets. Needs numpy, matplotlib and h5py."""
+"""Helpers for the pictures of the examples: runs, outlines, figures. Needs numpy, matplotlib and h5py."""
 import pathlib
 import sys
 
@@ -21,7 +21,7 @@ plt.rcParams.update({"font.size": 9, "axes.edgecolor": PALE, "axes.labelcolor": 
 
 
 class Motion:
-    """Bodies and probes of a run."""
+    """Motion of the bodies and columns of the probes of a run."""
 
     def __init__(self, name, *settings, model="model.yaml"):
         self.run = support.Run(ROOT / "examples" / name / model, *settings)
@@ -46,7 +46,7 @@ class Motion:
 
 
 def rotation(q):
-    """Matrices of quaternions (w, x, y, z)."""
+    """Rotation matrices of quaternions (w, x, y, z)."""
     w, x, y, z = q.T
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
                      [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
@@ -54,7 +54,7 @@ def rotation(q):
 
 
 def box(x, y, z, centre=(0, 0, 0)):
-    """The edges of a box as one line."""
+    """The edges of a box as one polyline."""
     corners = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1],
                         [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
     order = [0, 1, 2, 3, 0, 4, 5, 1, 5, 6, 2, 6, 7, 3, 7, 4]
@@ -70,7 +70,7 @@ def circle(radius, axis=2, at=0.0, count=49):
 
 
 def tube(radius, length, axis, centre=0.0):
-    """Two circles and the lines between them."""
+    """Outline of a cylinder: two circles and four lines between them."""
     a, b = circle(radius, axis, centre - length / 2), circle(radius, axis, centre + length / 2)
     lines = [a, b]
     lines += [np.array([a[i], b[i]]) for i in range(0, 48, 12)]
@@ -78,7 +78,7 @@ def tube(radius, length, axis, centre=0.0):
 
 
 def sheet(view=None, wide=1.25, flat=False, size=(9.6, 4.1)):
-    """A figure with the scene at the left and a plot at the right."""
+    """A figure with a scene on the left and a plot on the right."""
     figure = plt.figure(figsize=size)
     grid = figure.add_gridspec(1, 2, width_ratios=[wide, 1], left=0.075 if flat else 0.0,
                                right=0.98, bottom=0.13, top=0.92, wspace=0.16)
@@ -111,7 +111,7 @@ def frames(motion, begin, end, count):
 
 
 def fades(items):
-    """The items with opacities that grow to the last."""
+    """Pairs of an item and its opacity, which increases to 1 for the last."""
     return zip(items, np.linspace(0.15, 1.0, len(items)) ** 1.3)
 
 

@@ -20,10 +20,10 @@ def planetary_gearbox(tools):
         scene.plot([0, arm[0]], [0, arm[1]], color=tools.RED, lw=2)
     tools.label(scene, "sun, three planets on their carrier, ring", "x [m]", "y [m]")
     motor, teeth = m.probe("motor"), m.probe("teeth_1")
-    plot.plot(motor["t"], motor["mz"], color=tools.RED, label="moment of the motor [N m]")
-    plot.plot(teeth["t"], -teeth["effort_1"], color=tools.BLUE, label="of one planet on the sun [N m]")
+    plot.plot(motor["t"], motor["mz"], color=tools.RED, label="motor torque [N m]")
+    plot.plot(teeth["t"], -teeth["effort_1"], color=tools.BLUE, label="torque of one planet on the sun [N m]")
     plot.legend(frameon=False)
-    tools.label(plot, "half a second to full speed")
+    tools.label(plot, "full speed after 0.5 s")
     return figure
 
 
@@ -42,14 +42,14 @@ def suspension_corner(tools):
         scene.plot(0.75 + 0.25 * (tyre[:, 1] - 0.75), tyre[:, 2], color=tools.INK, lw=1.5, alpha=alpha)
         top, bottom = m.points("chassis", [[0, 0.5, 0]], k)[0], m.points("lower_arm", [[0, 0, 0]], k)[0]
         scene.plot([top[1], bottom[1]], [top[2], bottom[2]], color=tools.RED, lw=2, alpha=alpha)
-    tools.label(scene, "arms in bushings, strut, tyre on its platform", "y [m]", "z [m]")
+    tools.label(scene, "arms on bushings, strut, tyre on the platform", "y [m]", "z [m]")
     for body, colour in (("chassis", tools.BLUE), ("wheel", tools.INK)):
         z = m.probe(body)["z"]
         plot.plot(m.t, 1e3 * (z - z[0]), color=colour, label=body)
     shaker = m.probe("shaker")
     plot.plot(shaker["t"], 1e3 * shaker["displacement"], color=tools.GOLD, label="shaker")
     plot.legend(frameon=False)
-    tools.label(plot, "heave [mm], 20 mm at 1.5 Hz")
+    tools.label(plot, "heave [mm]; shaker: 20 mm, 1.5 Hz")
     return figure
 
 
@@ -62,12 +62,12 @@ def shaking_table(tools):
                 continue
             corners = m.points(body, [[-half, 0, -up], [half, 0, -up], [half, 0, up], [-half, 0, up], [-half, 0, -up]], k)
             scene.plot(corners[:, 0], corners[:, 2], color=colour, lw=2, alpha=alpha)
-    tools.label(scene, "the table and the crate that slips, a quarter of a second", "x [m]", "z [m]")
-    for body, colour, name in (("table", tools.INK, "table, mu 0.9 on it"), ("slips", tools.RED, "mu 0.4")):
+    tools.label(scene, "table and sliding crate, 0.5 to 0.75 s", "x [m]", "z [m]")
+    for body, colour, name in (("table", tools.INK, "table and crate, mu = 0.9"), ("slips", tools.RED, "crate, mu = 0.4")):
         probe = m.probe(body)
         plot.plot(probe["t"], probe["vx"], color=colour, label=name)
     plot.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.6, 1), ncol=2)
-    tools.label(plot, "velocities", "t [s]", "[m/s]")
+    tools.label(plot, "velocity", "t [s]", "[m/s]")
     return figure
 
 
@@ -89,7 +89,7 @@ def stewart_platform(tools):
         force[abs(motor["rate"]) < 2e-2] = np.nan
         plot.plot(motor["t"], force, color=colour, label=f"leg {i}")
     plot.legend(frameon=False, ncol=3)
-    tools.label(plot, "forces along three of the legs", y="[N]")
+    tools.label(plot, "axial forces of three legs", y="[N]")
     return figure
 
 
@@ -106,12 +106,12 @@ def geneva_drive(tools):
         for s in slots:
             ends = [[r * np.cos(s), r * np.sin(s), 0] for r in (0.015, radius)]
             tools.draw(scene, m.points("wheel", ends, k), tools.BLUE, alpha, 2)
-    scene.set_aspect("equal")
+    tools.label(scene, "at 0.3, 0.45 and 0.6 s", "x [m]", "y [m]")
     axle, motor = m.probe("axle"), m.probe("motor")
-    plot.plot(axle["t"], -axle["rz"], color=tools.BLUE, label="angle of the wheel [rad]")
-    plot.plot(motor["t"], 100 * motor["mz"], color=tools.RED, label="moment of the motor [N cm]")
+    plot.plot(axle["t"], -axle["rz"], color=tools.BLUE, label="wheel angle [rad]")
+    plot.plot(motor["t"], 100 * motor["mz"], color=tools.RED, label="motor torque [N cm]")
     plot.legend(frameon=False)
-    tools.label(plot, "two quarter turns", y="")
+    tools.label(plot, "two quarter turns of the wheel", y="")
     return figure
 
 
@@ -124,12 +124,12 @@ def three_rrr(tools):
             for name, colour in ((f"upper_{i}", tools.INK), (f"lower_{i}", tools.RED)):
                 tools.draw(scene, m.points(name, [[-0.2, 0, 0], [0.2, 0, 0]], k), colour, alpha, 2.5)
     tools.draw(scene, m.place["plate"], tools.GOLD, 1, 1)
-    scene.set_aspect("equal")
+    tools.label(scene, "at 0, 0.5 and 1 s", "x [m]", "y [m]")
     for i, colour in zip((1, 2, 3), (tools.RED, tools.BLUE, tools.GOLD)):
         motor = m.probe(f"motor_{i}")
         plot.plot(motor["t"], motor["mz"], color=colour, label=f"motor {i}")
     plot.legend(frameon=False, ncol=3)
-    tools.label(plot, "moments of the motors", y="[N m]")
+    tools.label(plot, "motor torques", y="[N m]")
     return figure
 
 
@@ -150,7 +150,7 @@ def excavator(tools):
     tip = m.probe("tip")
     scene.plot(tip["x"], tip["z"], color=tools.GREEN, lw=1)
     scene.axhline(0, color=tools.PALE, lw=2)
-    tools.label(scene, "at the start, half way, at the end", "x [m]", "z [m]")
+    tools.label(scene, "at 0, 3 and 6 s", "x [m]", "z [m]")
     for name, colour in (("boom", tools.BLUE), ("stick", tools.RED), ("bucket", tools.INK)):
         motor = m.probe(f"{name}_motor")
         along = m.place[f"{name}_rod"] - m.place[f"{name}_barrel"]
@@ -158,7 +158,7 @@ def excavator(tools):
         force = np.column_stack([motor["fx"], motor["fy"], motor["fz"]])
         plot.plot(motor["t"], 1e-3 * (force * along).sum(axis=1), color=colour, label=name)
     plot.legend(frameon=False, ncol=3)
-    tools.label(plot, "forces of the cylinders", y="[kN]")
+    tools.label(plot, "cylinder forces", y="[kN]")
     return figure
 
 
@@ -177,7 +177,7 @@ def trebuchet(tools):
     path = m.place["ball"][m.t < events["throw"] + 0.1]
     scene.plot(path[:, 0], path[:, 2], color=tools.RED, lw=0.8)
     scene.plot([0, 0], [0, 3], color=tools.PALE, lw=4)
-    tools.label(scene, "until the sling opens", "x [m]", "z [m]")
+    tools.label(scene, "throw until the sling opens", "x [m]", "z [m]")
     for name, column, colour in (("sling", "sling", tools.BLUE), ("trough", "trough", tools.GREEN)):
         probe = m.probe(name)
         force = 1e-3 * np.sqrt(probe["fx"] ** 2 + probe["fy"] ** 2 + probe["fz"] ** 2)
@@ -187,7 +187,7 @@ def trebuchet(tools):
             plot.axvline(t, color=tools.PALE, lw=1)
             plot.annotate(name, (t, plot.get_ylim()[1]), ha="right", va="top", rotation=90, fontsize=8)
     plot.legend(frameon=False, loc="center left")
-    tools.label(plot, "forces of sling and trough, and the events", y="[kN]")
+    tools.label(plot, "forces of sling and trough; vertical lines: events", y="[kN]")
     return figure
 
 
@@ -204,11 +204,11 @@ def cable_crane(tools):
         scene.plot(winch[0], winch[2], color=tools.BLUE, marker="s", ms=6, alpha=alpha)
     scene.plot([0, 0], [0, 8], color=tools.PALE, lw=4, zorder=0)
     scene.plot(m.place["hook"][:, 0], m.place["hook"][:, 2], color=tools.INK, lw=0.7)
-    tools.label(scene, "the lift and the swing after it", "x [m]", "z [m]")
+    tools.label(scene, "lift and subsequent swing", "x [m]", "z [m]")
     rope = m.probe("rope")
     plot.plot(rope["t"], rope["tension"], color=tools.RED)
     plot.axhline(500 * 9.81 / 2, color=tools.PALE, lw=1)
-    tools.label(plot, "tension of the rope, half the weight", y="[N]")
+    tools.label(plot, "rope tension; grey: half the weight", y="[N]")
     return figure
 
 
@@ -224,14 +224,14 @@ def arm_with_muscles(tools):
         scene.plot([0.02, end[0]], [0.3, end[2]], color=tools.RED, lw=2.5, alpha=alpha)
         scene.plot([-0.02, -0.025, back[0]], [0.28, 0.02, back[2]], color=tools.BLUE, lw=2.5, alpha=alpha)
     scene.plot([0, 0], [0, 0.32], color=tools.PALE, lw=5, zorder=0)
-    tools.label(scene, "biceps, triceps", "x [m]", "z [m]")
+    tools.label(scene, "biceps (red), triceps (blue)", "x [m]", "z [m]")
     for name, colour in (("biceps", tools.RED), ("triceps", tools.BLUE)):
         probe = m.probe(name)
         plot.plot(probe["t"], probe["tension"], color=colour, label=name)
     elbow = m.probe("elbow")
-    plot.plot(elbow["t"], 2 * np.degrees(elbow["rz"]), color=tools.INK, lw=0.8, label="elbow [deg], twice")
+    plot.plot(elbow["t"], 2 * np.degrees(elbow["rz"]), color=tools.INK, lw=0.8, label="twice the elbow angle [deg]")
     plot.legend(frameon=False)
-    tools.label(plot, "tensions", y="[N]")
+    tools.label(plot, "muscle tensions", y="[N]")
     return figure
 
 
@@ -253,17 +253,17 @@ def bicycle(tools):
         plot.plot(frame["t"], np.degrees(frame["euler2x"]), color=colour, label=f"{v} m/s")
     plot.set_xlim(0, 2.5), plot.set_ylim(-40, 40)
     plot.legend(frameon=False)
-    tools.label(plot, "lean after the gust", y="[deg]")
+    tools.label(plot, "lean angle after the gust", y="[deg]")
     return figure
 
 
 def falling_cat(tools):
     m = tools.Motion("falling_cat", "output.every=5 ms")
     figure, scene, plot = tools.sheet(flat=True, wide=1.25)
-    flat = np.array([[1, 0], [0.4, 0.3], [0, 1]])             # seen from beside and a little above
+    flat = np.array([[1, 0], [0.4, 0.3], [0, 1]])             # view from the side and slightly from above
     legs = {"front": (-0.11, 0.11, -0.06, tools.BLUE), "rear": (-0.12, 0.12, 0.06, tools.RED)}
     for n, k in enumerate(tools.frames(m, 0.0, 0.6, 6)):
-        away = np.array([0.6 * (n % 3), 0, 4.905 * m.t[k] ** 2 - 2 - 0.62 * (n // 3)])  # side by side, not one below the other
+        away = np.array([0.6 * (n % 3), 0, 4.905 * m.t[k] ** 2 - 2 - 0.62 * (n // 3)])  # without the free fall; in two rows
         for body, (low, high, at, colour) in legs.items():
             lines = [([low, 0, 0], [high, 0, 0], 7)] + [([at, y, 0], [at, y, 0.16], 2.5) for y in (-0.05, 0.05)]
             for a, b, width in lines:
@@ -271,13 +271,13 @@ def falling_cat(tools):
         scene.plot(*((m.points("front", [[-0.15, 0, 0.02]], k) + away) @ flat).T, color=tools.BLUE, marker="o", ms=9)
         scene.text(0.6 * (n % 3), -0.3 - 0.62 * (n // 3), f"{m.t[k]:.2f} s", ha="center", fontsize=8)
     scene.set_xlim(-0.3, 1.5), scene.set_ylim(-0.98, 0.3), scene.set_axis_off()
-    scene.set_title("its fall left out", loc="left")
+    scene.set_title("shown without the free fall", loc="left")
     turn = np.degrees(np.unwrap(np.arctan2(m.turn["front"][:, 2, 1], m.turn["front"][:, 2, 2])))
     spine = m.probe("spine")
-    plot.plot(m.t, turn, color=tools.BLUE, label="turn of the front about its spine")
+    plot.plot(m.t, turn, color=tools.BLUE, label="rotation of the front")
     bend = np.degrees(np.arccos(np.cos(spine["rx"]) * np.cos(spine["ry"])))
-    plot.plot(spine["t"], bend, color=tools.GOLD, label="bend of the spine")
-    plot.legend(frameon=False)
+    plot.plot(spine["t"], bend, color=tools.GOLD, label="bend angle of the spine")
+    plot.legend(frameon=False, loc="lower left")
     tools.label(plot, "zero angular momentum throughout", y="[deg]")
     return figure
 
@@ -288,7 +288,7 @@ def governor_on_motor(tools):
     middle, half = (1 * 0.25 + 0.15 * 0.125) / 1.15, 0.125
     for t, alpha in ((1.0, 0.3), (2.0, 0.55), (4.0, 1.0)):
         k = int(np.argmin(abs(m.t - t)))
-        back = m.turn["shaft"][k]                             # seen along with the shaft
+        back = m.turn["shaft"][k]                             # in axes that rotate with the shaft
         z = m.place["sleeve"][k][2]
         for name in "ab":
             arm = m.points(f"arm_{name}", [[-middle, 0, 0], [2 * half - middle, 0, 0]], k) @ back
@@ -302,12 +302,12 @@ def governor_on_motor(tools):
     motor, pin = m.probe("motor"), m.probe("pin_a")
     tilt = np.arccos((1 * 0.25 + 0.15 * 0.125 + 3 * 0.25) * 9.81 / ((0.0625 + 0.15 * 0.0625 / 3 - 2e-5) * 15**2))
     steady = np.arccos(np.cos(tilt) * (15 / motor["rate"]) ** 2)
-    plot.plot(motor["t"], np.degrees(steady), color=tools.PALE, lw=3, label="steady tilt at that speed [deg]")
+    plot.plot(motor["t"], np.degrees(steady), color=tools.PALE, lw=3, label="steady tilt at this speed [deg]")
     plot.plot(pin["t"], np.degrees(tilt + pin["rz"]), color=tools.BLUE, label="tilt of the arms [deg]")
-    plot.plot(motor["t"], motor["power"], color=tools.RED, label="power of the motor [W]")
+    plot.plot(motor["t"], motor["power"], color=tools.RED, label="motor power [W]")
     plot.set_xlim(0, 6)
     plot.legend(frameon=False, loc="center right")
-    tools.label(plot, "from 15 to 20 rad/s")
+    tools.label(plot, "motor speed from 15 to 20 rad/s")
     return figure
 
 
@@ -317,13 +317,13 @@ def stick_slip(tools):
     block = m.probe("block")
     scene.plot(1e3 * block["x"], block["vx"], color=tools.BLUE)
     scene.axhline(0.1, color=tools.PALE, lw=3, zorder=0)
-    scene.text(-0.5, 0.106, "the belt's velocity", fontsize=8)
+    scene.text(-0.5, 0.106, "velocity of the belt", fontsize=8)
     scene.set_aspect("auto")
-    tools.label(scene, "sticks on the straight line, slides on the arc", "x [mm]", "velocity [m/s]")
-    plot.plot(block["t"], 1e3 * block["x"], color=tools.BLUE, label="place of the block [mm]")
+    tools.label(scene, "straight line: sticks; arc: slides", "x [mm]", "velocity [m/s]")
+    plot.plot(block["t"], 1e3 * block["x"], color=tools.BLUE, label="position of the block [mm]")
     drive = m.probe("drive")
     plot.plot(drive["t"], drive["fx"], color=tools.RED, label="friction [N]")
     plot.set_ylim(-1, 19)
     plot.legend(frameon=False, ncol=2, loc="upper center")
-    tools.label(plot, "0.098 s on the belt, 0.237 s on its way back")
+    tools.label(plot, "sticks for 0.098 s, slides for 0.237 s")
     return figure

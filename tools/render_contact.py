@@ -41,16 +41,16 @@ class Pictures:
     def bouncing_ball(self):
         r, m = self.r, self.r.Motion("bouncing_ball")
         figure, scene, plot = r.sheet(flat=True, wide=1.1)
-        names, colours = ("elastic", "lively", "dull"), (r.BLUE, r.GOLD, r.RED)
+        names, colours = {"elastic": "e = 1", "lively": "e = 0.8", "dull": "e = 0.5"}, (r.BLUE, r.GOLD, r.RED)
         scene.axhline(0, color=r.INK, linewidth=1.5)
         for k, alpha in r.fades(r.frames(m, 0.0, 0.9, 14)):
             balls(scene, [m.place[n][k] for n in names], 0.05, colours, alpha)
         flat(scene, (-0.25, -0.05), (1.05, 1.2))
         for n, c in zip(names, colours):
             p = m.probe(n)
-            plot.plot(p["t"], p["z"], color=c, label=n)
-        plot.set_xlim(0, 6), plot.legend(frameon=False, loc="upper right")
-        r.label(plot, "height of the middle", y="z [m]")
+            plot.plot(p["t"], p["z"], color=c, label=names[n])
+        plot.set_xlim(0, 6), plot.set_ylim(0, 1.2), plot.legend(frameon=False, loc="upper right", ncol=3)
+        r.label(plot, "height of the centre", y="z [m]")
         return figure
 
     def incline(self):
@@ -67,10 +67,11 @@ class Pictures:
         r.fit(scene, (-0.6, -0.5, -1.0), (1.7, 1.5, 0.4), 1.2)
         for name, colour in (("holds", r.BLUE), ("slides", r.RED)):
             p = m.probe(name)
-            way = np.linalg.norm(np.array([p[c] - p[c][0] for c in "xyz"]), axis=0)
-            plot.semilogy(p["t"][1:], way[1:], color=colour, label={"holds": "mu = 0.6", "slides": "mu = 0.5"}[name])
+            displacement = np.linalg.norm(np.array([p[c] - p[c][0] for c in "xyz"]), axis=0)
+            label = {"holds": "mu = 0.6", "slides": "mu = 0.5"}[name]
+            plot.semilogy(p["t"][1:], displacement[1:], color=colour, label=label)
         plot.legend(frameon=False, loc="center right")
-        r.label(plot, "way from the start", y="[m]")
+        r.label(plot, "displacement from the start", y="[m]")
         return figure
 
     def newtons_cradle(self):
@@ -90,7 +91,7 @@ class Pictures:
             plot.plot(p["t"], np.degrees(p["rz"]) + start, color=colour, label=f"ball {i + 1}")
         plot.legend(frameon=False, ncol=3, loc="upper center")
         plot.set_ylim(-35, 45)
-        r.label(plot, "angles of the rods", y="[deg]")
+        r.label(plot, "rod angles", y="[deg]")
         return figure
 
     def tippe_top(self):
@@ -122,11 +123,11 @@ class Pictures:
             line = np.column_stack([np.sqrt(1 - z * z) * np.cos(a), np.sqrt(1 - z * z) * np.sin(a), z]) * [0.2, 0.03, 0.02]
             r.draw(scene, m.points("stone", line + [0, 0, 0.01], k), r.BLUE, 0.5, 0.6)
         r.fit(scene, (-0.2, -0.06, -0.01), (0.2, 0.06, 0.03), 1.3)
-        for motion, colour, label in ((m, r.RED, "spun against its liking"), (other, r.BLUE, "spun its way")):
+        for motion, colour, label in ((m, r.RED, "started in the unstable direction"), (other, r.BLUE, "started in the stable direction")):
             omega = np.array(self.r.support.angular_velocity(motion.run, "origin", ("x_tip", "y_tip", "z_tip")))
             plot.plot(motion.probe("origin")["t"], omega[:, 2], color=colour, label=label)
-        plot.axhline(0, color=r.PALE), plot.legend(frameon=False, loc="center right")
-        r.label(plot, "spin about the vertical", y="[rad/s]")
+        plot.axhline(0, color=r.PALE), plot.legend(frameon=False, loc="lower right")
+        r.label(plot, "angular velocity about the vertical", y="[rad/s]")
         return figure
 
     def stack(self):
@@ -139,10 +140,10 @@ class Pictures:
         flat(scene, (-0.25, -0.05), (0.25, 1.05))
         first = int(np.argmin(abs(m.t - 1.0)))
         for i, colour in ((0, r.PALE), (4, r.GOLD), (9, r.RED)):
-            way = np.linalg.norm(m.place[f"box_{i}"] - m.place[f"box_{i}"][first], axis=1)
-            plot.semilogy(m.t[1:], np.maximum(way[1:], 1e-17), color=colour, label=f"box {i + 1}")
+            displacement = np.linalg.norm(m.place[f"box_{i}"] - m.place[f"box_{i}"][first], axis=1)
+            plot.semilogy(m.t[1:], np.maximum(displacement[1:], 1e-17), color=colour, label=f"box {i + 1}")
         plot.legend(frameon=False), plot.set_ylim(1e-17, 1e-3)
-        r.label(plot, "distance from where it was after 1 s", y="[m]")
+        r.label(plot, "displacement since t = 1 s", y="[m]")
         return figure
 
     def card_house(self):
@@ -155,10 +156,10 @@ class Pictures:
             for k, alpha in r.fades(r.frames(falls, 0.0, 1.2, 5)):
                 polygon(scene, side(falls, name, 0.02, 1.0, k) + [1.8, 0, 0], r.RED, alpha)
         flat(scene, (-0.8, -0.1), (3.0, 1.1))
-        plot.plot(stands.t, stands.place["right"][:, 2], color=r.BLUE, label="a tenth more friction")
-        plot.plot(falls.t, falls.place["right"][:, 2], color=r.RED, label="a tenth less")
+        plot.plot(stands.t, stands.place["right"][:, 2], color=r.BLUE, label="friction 10 % above the limit")
+        plot.plot(falls.t, falls.place["right"][:, 2], color=r.RED, label="friction 10 % below the limit")
         plot.legend(frameon=False, loc="center right"), plot.set_ylim(0, 0.6)
-        r.label(plot, "height of a plate's middle", y="[m]")
+        r.label(plot, "height of a plate's centre", y="[m]")
         return figure
 
     def rolling_coin(self):
@@ -171,7 +172,7 @@ class Pictures:
         r.draw(scene, foot, r.PALE, width=0.7)
         r.fit(scene, (-0.009, -0.009, 0), (0.009, 0.009, 0.02), 1.1)
         plot.plot(m.t, 1e3 * m.place["coin"][:, 2], color=r.BLUE)
-        r.label(plot, "height of the middle", y="[mm]")
+        r.label(plot, "height of the centre", y="[mm]")
         return figure
 
     def spheres_in_a_bin(self):
@@ -187,8 +188,8 @@ class Pictures:
         with r.h5py.File(m.run.folder / "results.h5") as file:
             for name, colour in (("kinetic", r.BLUE), ("lost_in_impacts", r.RED), ("lost_by_friction", r.GOLD)):
                 plot.plot(m.t, file[f"energy/{name}"][: len(m.t)], color=colour, label=name.replace("_", " "))
-        plot.legend(frameon=False)
-        r.label(plot, "energies", y="[J]")
+        plot.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.2))
+        r.label(plot, "energy", y="[J]")
         return figure
 
     def gear_pair(self):
@@ -210,7 +211,7 @@ class Pictures:
         force.plot(p["t"], p["normal"], color=r.PALE, linewidth=0.5, zorder=0), force.set_ylim(0, None)
         force.set_ylabel("normal force [N]"), force.grid(False)
         plot.legend(frameon=False, loc="upper right")
-        r.label(plot, "speeds of the gears", y="[rad/s]")
+        r.label(plot, "angular velocities of the gears", y="[rad/s]")
         return figure
 
     def crossed_lines(self):
@@ -220,12 +221,12 @@ class Pictures:
             x = np.array([m.place[f"{name}.{k}"][-1] for k in range(pieces + 1)])
             scene.plot(x[:, along], 1e3 * x[:, 2], color=colour, label=name, marker="o", ms=2)
         scene.set_aspect("auto"), scene.legend(frameon=False)
-        r.label(scene, "both lines, each from its side", "along it [m]", "z [mm]")
+        r.label(scene, "both cables, each seen from the side", "position along the cable [m]", "z [mm]")
         masses = np.linspace(0.2, 1.0, 5)
         for tight, colour in (("1.99 m", r.BLUE), ("1.995 m", r.GOLD)):
             runs = [r.support.Run(r.ROOT / "examples/crossed_lines/model.yaml", f"heavy={mass} kg/m", f"tight={tight}")
                     for mass in masses]
-            plot.plot(masses, [run.probe("press")["normal"][-1] for run in runs], "o-", color=colour, ms=4, label=tight)
+            plot.plot(masses, [run.probe("press")["normal"][-1] for run in runs], "o-", color=colour, ms=4, label=f"lower cable of {tight}")
         plot.legend(frameon=False)
-        r.label(plot, "force between them [N], by the length of the lower one", "mass of the upper one [kg/m]")
+        r.label(plot, "contact force [N], by free length", "mass of the upper cable [kg/m]")
         return figure

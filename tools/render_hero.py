@@ -32,8 +32,8 @@ def hero():
     surface.set_clip_on(False)
     colours = plt.get_cmap("Spectral")
     starts = []
-    for part in np.linspace(0.1, 0.97, 10):  # of the way from an axis to the separatrix
-        a, b = part * np.radians([30.0, 60.0])  # of the momenta from z and from x, in the plane of the two
+    for part in np.linspace(0.1, 0.97, 10):  # fraction of the angle from an axis to the separatrix
+        a, b = part * np.radians([30.0, 60.0])  # angles of the momenta from z and from x, in the x-z plane
         starts += [(s * np.cos(b), 0, np.sin(b)) for s in (1, -1)] + [(np.sin(a), 0, s * np.cos(a)) for s in (1, -1)]
     starts += [(s * 1e-4, y, r * 1e-4) for s in (1, -1) for r in (1, -1) for y in (1, -1)]
     with tempfile.TemporaryDirectory() as folder:
@@ -55,7 +55,7 @@ output: {{every: 0.1 s}}
             energy = 0.5 * (pi**2 / J).sum() / h**2  # from 1/6 to 1/2, 1/4 on the separatrix
             shade = 0.5 * (energy - 1 / 6) / (1 / 12) if energy < 0.25 else 0.5 + 0.5 * (energy - 0.25) / 0.25
             separatrix = abs(energy - 0.25) < 1e-6
-            normal = path * J**2  # of the ellipsoid, outwards
+            normal = path * J**2  # outward, to the ellipsoid
             hidden = (normal @ eye) < -1e-3
             path = np.where(hidden[:, None], np.nan, path)
             colour, width = (INK, 1.8) if separatrix else (colours(0.04 + 0.92 * shade), 1.4)
@@ -64,7 +64,8 @@ output: {{every: 0.1 s}}
         axis = np.zeros(3)
         axis[i] = 1
         draw(scene, [axis * length, axis * (length + 0.16)], INK, 1, 1.2, zorder=4)
-        name = ("least", "middle", "greatest")[i] + " moment"
-        scene.text(*(axis * (length + (0.25, 0.30, 0.27)[i])), name, fontsize=8, ha="center", color=INK, zorder=5)
+        name = ("smallest", "intermediate", "largest")[i] + " moment of inertia"
+        beside = ("center", "left", "right")[i]
+        scene.text(*(axis * (length + (0.25, 0.17, 0.27)[i])), name, fontsize=8, ha=beside, color=INK, zorder=5)
     fit(scene, (-1, -0.5, -0.34), (1, 0.5, 0.34), 1.5)
     return figure

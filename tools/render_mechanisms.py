@@ -52,11 +52,11 @@ def double_pendulum():
     scene.scatter(tip[:, 0], tip[:, 2], c=m.t, cmap="plasma", s=1.5)
     for k, alpha in fades(frames(m, 0, 0.9, 8)):
         scene.plot([0, elbow[k, 0], tip[k, 0]], [0, elbow[k, 2], tip[k, 2]], "-o", color=INK, alpha=alpha, ms=3, lw=1.5)
-    label(scene, "path of the tip, first swing of the bars", "x [m]", "z [m]")
+    label(scene, "path of the tip; bars during the first swing", "x [m]", "z [m]")
     plot.plot(m.t, np.degrees(m.probe("shoulder")["rz"]), color=BLUE, label="shoulder")
     plot.plot(m.t, np.degrees(m.probe("elbow")["rz"]), color=RED, label="elbow")
     plot.legend(frameon=False)
-    label(plot, "angles of the hinges [deg]")
+    label(plot, "joint angles [deg]")
     return figure
 
 
@@ -74,7 +74,7 @@ def spatial_slider_crank():
         scene.scatter(*np.array([B[k], C[k]]).T, color=INK, s=8, alpha=alpha)
     fit(scene, (-0.02, -0.03, -0.02), (0.32, 0.2, 0.21), 1.4)
     plot.plot(m.t, m.probe("slider")["x"] if len(m.t) == len(m.probe("slider")["x"]) else C[:, 0], color=BLUE)
-    label(plot, "place of the slider [m]")
+    label(plot, "position of the slider [m]")
     return figure
 
 
@@ -91,10 +91,11 @@ def crank_rocker():
     scene.plot([0, 0.4], [0, 0], "o", color=INK, ms=6)
     label(scene, "one turn of the crank at full speed", "x [m]", "z [m]")
     motor = m.probe("motor")
-    plot.plot(motor["t"], -np.array(motor["my"]), color=RED, label="moment of the motor [N m]")
-    plot.plot(motor["t"], np.array(motor["rate"]) / 10, color=BLUE, label="its speed [10 rad/s]")
-    plot.legend(frameon=False)
-    label(plot, "half a second to full speed")
+    plot.plot(motor["t"], -np.array(motor["my"]), color=RED, label="motor torque [N m]")
+    plot.plot(motor["t"], np.array(motor["rate"]) / 10, color=BLUE, label="motor speed [10 rad/s]")
+    plot.legend(frameon=False, loc="lower left")
+    plot.set_ylim(-1.8, 1.3)
+    label(plot, "full speed after 0.5 s")
     return figure
 
 
@@ -110,18 +111,18 @@ def n_four_bar():
             tops.append(ends[1])
         draw(scene, tops, RED, alpha, 2, marker="o", ms=3)
     scene.plot([0, 1, 2], [0, 0, 0], "o", color=INK, ms=6)
-    label(scene, "from upright through the line where all bars coincide", "x [m]", "y [m]")
+    label(scene, "from upright through the position with all bars in one line", "x [m]", "y [m]")
     B0 = m.probe("B0")
     plot.plot(B0["t"], B0["x"], color=BLUE, label="x")
     plot.plot(B0["t"], B0["y"], color=RED, label="y")
     plot.set_xlim(0, 6)
     plot.legend(frameon=False, loc="lower right", ncol=2)
     plot.set_ylim(-1.35, 1.1)
-    label(plot, "place of B0, the first upright's top [m]")
+    label(plot, "position of B0, top of the first upright [m]")
     return figure
 
 
-PLATES = {  # outlines from the plates' own points; centres of mass are subtracted below
+PLATES = {  # outlines relative to the reference points of the plates; centres of mass are subtracted below
     "K1": ((0.00092, 0), [(0, 0), (0.007, 0)], RED), "K2": ((-0.0115, 0), [(0, 0), (-0.028, 0)], GOLD),
     "K3": ((0.01043, -0.01874), [(0, 0), (0, -0.035), (0.02, -0.018), (0, 0)], BLUE),
     "K4": ((0, -0.00579), [(0, 0), (0, -0.02)], GREEN),
@@ -170,7 +171,7 @@ def bricard():
         plot.plot(P3["t"], P3[axis], color=colour, label=axis)
     plot.legend(frameon=False, ncol=3, loc="upper right", fontsize=8)
     plot.set_ylim(-1.1, 1.35)
-    label(plot, "place of P3 [m]")
+    label(plot, "position of P3 [m]")
     return figure
 
 
@@ -216,7 +217,7 @@ def gyroscope():
     part = m.t <= 0.5
     plot.plot(np.degrees(phi[part]), np.degrees(theta[part]), color=BLUE)
     plot.invert_yaxis()
-    label(plot, "the axle's end nods while it goes round (0.5 s)", "turn of the outer ring [deg]",
+    label(plot, "precession and nutation of the axle, 0.5 s", "rotation of the outer ring [deg]",
           "tilt of the inner ring [deg]")
     return figure
 
@@ -232,11 +233,11 @@ def door_on_two_hinges():
         draw(scene, [(0, 0, z - 0.06), (0, 0, z + 0.06)], INK, 1, 6)
     fit(scene, (-0.1, -0.1, 0), (1.0, 1.0, 2.1), 1.3)
     lower, upper = m.probe("lower"), m.probe("upper")
-    plot.plot(lower["t"], lower["fz"] + upper["fz"], color=INK, label="vertical, both")
+    plot.plot(lower["t"], lower["fz"] + upper["fz"], color=INK, label="vertical, both hinges")
     plot.plot(lower["t"], np.hypot(lower["fx"], lower["fy"]), color=BLUE, label="horizontal, lower hinge")
     plot.plot(lower["t"], np.hypot(upper["fx"], upper["fy"]), color=RED, label="horizontal, upper hinge")
     plot.legend(frameon=False, fontsize=8, loc="center right")
-    label(plot, "forces of the hinges [N]")
+    label(plot, "hinge forces [N]")
     return figure
 
 
@@ -249,14 +250,14 @@ def beam_roll_up():
     radius = 1 / (2 * np.pi)
     draw(scene, np.c_[radius * np.sin(angle), radius * (1 - np.cos(angle))], INK, 0.8, 0.7, linestyle="--")
     draw(scene, [[0, -0.06], [0, 0.06]], INK, 1, 3)
-    label(scene, "eight parts of the moment; dashed: the circle", "x [m]", "y [m]")
+    label(scene, "eight load steps of the end moment; dashed: full circle", "x [m]", "y [m]")
     load, x = m.probe("tip")["t"], m.probe("tip")
     part = np.linspace(1e-3, 1, 200) * 2 * np.pi
     plot.plot(part / (2 * np.pi), np.sin(part) / part, color=PALE, linewidth=3, label="closed form")
     plot.plot(part / (2 * np.pi), (1 - np.cos(part)) / part, color=PALE, linewidth=3)
     plot.plot(load, x["x"], "o", color=BLUE, ms=4, label="x")
     plot.plot(load, x["y"], "o", color=RED, ms=4, label="y")
-    label(plot, "end of the strip [m]", "part of the moment")
+    label(plot, "position of the strip's end [m]", "fraction of the full moment [-]")
     plot.legend(frameon=False)
     return figure
 
@@ -271,7 +272,7 @@ def flexible_four_bar():
         draw(scene, [[0, 0, 0], b], INK, alpha, 1.6, marker="o", ms=3)
         draw(scene, [[1.2, 0, 0], c], GREEN, alpha, 1.6, marker="o", ms=3)
         draw(scene, [b, c], PALE, alpha, 0.6, zorder=0)
-    label(scene, "every 70 ms: crank, coupler, rocker", "x [m]", "y [m]")
+    label(scene, "crank, coupler and rocker every 70 ms", "x [m]", "y [m]")
 
     def bending(run):
         b, c, middle = (np.array(run.points(n))[:, :2] for n in ("B", "C", "middle"))
@@ -280,6 +281,6 @@ def flexible_four_bar():
 
     plot.plot(m.t, 1e3 * bending(m.run), color=BLUE, label="beam, 16 elements")
     plot.plot(s.t, 1e3 * bending(s.run), color=RED, linestyle="--", label="solid, 12 hex20")
-    label(plot, "bending of the coupler's middle [mm]")
+    label(plot, "deflection at the coupler's midpoint [mm]")
     plot.legend(frameon=False)
     return figure

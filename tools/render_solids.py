@@ -44,7 +44,7 @@ class Solids:
 
 
 def surface(connectivity, offsets):
-    """Corners of the faces that belong to one hexahedron only."""
+    """Corner nodes of the outer faces: those that belong to one hexahedron only."""
     seen = {}
     for first in offsets[:-1] if len(offsets) > 1 else offsets:
         corners = connectivity[first:first + 8]
@@ -56,7 +56,7 @@ def surface(connectivity, offsets):
 
 
 def show(scene, x, faces, values=None, scale=1.0, colour=BLUE, alpha=1.0, turn=np.eye(3), edges=0.25):
-    """A solid, shaded, coloured by a field of its nodes or in one colour."""
+    """Draws a solid with shading, coloured by a nodal field or in one colour."""
     quads = x[faces] @ turn.T
     normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -84,8 +84,8 @@ def flexible_panel():
         scene.text(shift, 0, -1.75, f"{m.t[k]:.0f} s", ha="center", fontsize=8)
     fit(scene, (-1.0, -1.6, -1.6), (8.0, 1.6, 1.6), 1.9)
     body = np.einsum("kji,kj->ki", m.turn["hub"], m.spin["hub"])
-    for i, (name, colour) in enumerate((("along the panel", GOLD), ("across: largest inertia", BLUE),
-                                        ("long axis: least inertia", RED))):
+    for i, (name, colour) in enumerate((("along the panel", GOLD), ("across it (largest inertia)", BLUE),
+                                        ("long axis (smallest inertia)", RED))):
         plot.plot(m.t, body[:, i], color=colour, label=name, linewidth=0.8)
     plot.legend(frameon=False, fontsize=7.5, loc="upper right")
     label(plot, "angular velocity in body axes [rad/s]")
@@ -96,7 +96,7 @@ def knee():
     intact, torn = Solids("knee"), Solids("knee", "cruciate=0")
     side = Solids("knee", "drawer=0", "varus=20 N")
     figure, scene, plot = sheet((12, -66), wide=1.7)
-    for shift, m, name in ((0, intact, "drawer"), (0.1, torn, "drawer, torn"), (0.2, side, "varus")):
+    for shift, m, name in ((0, intact, "drawer, intact"), (0.1, torn, "drawer, torn"), (0.2, side, "varus")):
         offset = np.array([shift, 0, 0])
         for solid, scale in (("inner_collateral", 1.2e6), ("outer_collateral", 1.2e6), ("pad", 2e5)):
             show(scene, m.nodes[solid][-1] + offset, m.faces[solid], m.stress[solid][-1], scale)
@@ -109,7 +109,7 @@ def knee():
     bars = [("intact", intact), ("anterior\ntorn", torn)]
     forces = [[abs(m.probe("pad")["fx"][-1]), np.linalg.norm([m.probe("anterior")[k][-1] for k in ("fx", "fz")]),
                np.linalg.norm([m.probe("posterior")[k][-1] for k in ("fx", "fz")])] for _, m in bars]
-    for i, (name, colour) in enumerate((("shear of the pad", GREEN), ("anterior cruciate", RED),
+    for i, (name, colour) in enumerate((("shear force of the pad", GREEN), ("anterior cruciate", RED),
                                         ("posterior cruciate", GOLD))):
         plot.bar(np.arange(2) + 0.22 * (i - 1), [f[i] for f in forces], 0.2, color=colour, label=name)
     for i, (_, m) in enumerate(bars):
@@ -120,7 +120,7 @@ def knee():
     plot.set_xticks(range(2), [name for name, _ in bars])
     plot.legend(frameon=False, fontsize=7.5, loc="upper left")
     plot.set_ylim(0, 1.35 * max(map(max, forces)))
-    label(plot, "who carries 100 N of drawer [N]", "")
+    label(plot, "load sharing at 100 N drawer force [N]", "")
     return figure
 
 
@@ -136,14 +136,14 @@ def rubber_bushing():
     away = ring.probe("pin")
     inset = plot.inset_axes([0.62, 0.12, 0.36, 0.34])
     inset.plot(1e3 * away["t"], 1e3 * away["x"], color=RED, linewidth=0.9)
-    inset.set_title("let go: pin [mm] over t [ms]", fontsize=7.5)
+    inset.set_title("sudden load: pin [mm] over t [ms]", fontsize=7.5)
     inset.tick_params(labelsize=7)
     label(plot, "radial force [kN]", "deflection of the pin [mm]")
     return figure
 
 
 def side(scene, x, faces, values, scale, towards):
-    """The faces of a solid whose normals are along a direction, seen from there: x over z."""
+    """Draws the faces of a solid whose normals point in a direction, seen from there, in the x-z plane."""
     quads = x[faces]
     normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
     seen = normals @ towards > 0.5 * np.linalg.norm(normals, axis=1)
@@ -159,11 +159,11 @@ def ironing():
     side(scene, x[k], m.faces["block"], values[k], np.percentile(values[k], 97), np.array([0, -1, 0]))
     a = np.linspace(0, 2 * np.pi, 90)
     scene.fill(20 * np.cos(a), 40.2 + 20 * np.sin(a), facecolor=PALE, edgecolor=INK, linewidth=0.8)
-    label(scene, "stress of the block while it is drawn to the left", "x [mm]", "z [mm]")
+    label(scene, "von Mises stress while the block is pulled to the left", "x [mm]", "z [mm]")
     face = m.probe("face")
     plot.plot(face["t"], face["normal"], color=BLUE, label="normal")
     plot.plot(face["t"], np.hypot(face["ftx"], face["ftz"]), color=RED, label="friction")
-    plot.plot(face["t"], 0.3 * face["normal"], color=GOLD, linestyle="--", linewidth=0.8, label="0.3 of normal")
+    plot.plot(face["t"], 0.3 * face["normal"], color=GOLD, linestyle="--", linewidth=0.8, label="0.3 times normal")
     plot.legend(frameon=False, fontsize=7.5)
     label(plot, "force on the block [N]")
     return figure
@@ -202,10 +202,10 @@ def soft_rings():
             side(scene, x, m.faces[name], m.stress[name][k], 4e4, np.array([0, -1, 0]))
     label(scene, "0, 0.2 and 0.4 s", "x [mm]", "y [mm]")
     face, hand = m.probe("face"), m.probe("hand")
-    plot.plot(1e3 * face["t"], face["normal"], color=BLUE, label="normal force at the face")
-    plot.plot(1e3 * hand["t"], -hand["fy"], color=RED, linewidth=0.8, label="hand")
+    plot.plot(1e3 * face["t"], face["normal"], color=BLUE, label="normal contact force")
+    plot.plot(1e3 * hand["t"], -hand["fy"], color=RED, linewidth=0.8, label="driving force")
     plot.legend(frameon=False, fontsize=7.5)
-    label(plot, "force [N]", "time [ms]")
+    label(plot, "force [N]", "t [ms]")
     return figure
 
 
