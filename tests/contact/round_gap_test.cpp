@@ -64,7 +64,7 @@ TEST(RoundGap, OfCrossingSidesIsThatOfTheirAxes) {
         const Mat3 L_a = along(on_a), L_b = along(on_b);
         const Placement<double> at_a(r_a, L_a, 0), at_b(Vec3::Zero(), L_b, 6);
         const GapKind kind = b.is_capsule() ? GapKind::round_edge : GapKind::round_round;
-        const Gap<double> g = gap({kind, 0, 0, 1.0, Fade::parallel}, a.shape, b.shape, at_a, at_b);
+        const Gap<double> g = gap({kind, 0, 0, Fade::parallel}, a.shape, b.shape, at_a, at_b);
         EXPECT_NEAR(g.distance, distance, 2e-6 * (a.half + b.half)) << a.name << " " << b.name;
         EXPECT_LT((value(g.normal) - n).norm(), 1e-4) << a.name << " " << b.name;
         EXPECT_LT((value(g.point) - t * on_b - (b.radius + 0.5 * distance) * n).norm(),
@@ -99,7 +99,7 @@ TEST(RoundGap, OfParallelSidesIsThatOfTheirAxes) {
         const Placement<double> at_b(Vec3::Zero(), L, 6),
             at_a(shift * axis + (a.radius + b.radius + distance) * n, L, 0);
         const Gap<double> g =
-            gap({GapKind::end_round, 1, 0, 1.0, Fade::none}, a.shape, b.shape, at_a, at_b);
+            gap({GapKind::end_round, 1, 0, Fade::none}, a.shape, b.shape, at_a, at_b);
         EXPECT_NEAR(g.distance, distance, 5e-5 * (a.radius + b.radius) + 2e-6 * (a.half + b.half))
             << a.name << " " << b.name << " " << below;
         EXPECT_LT((value(g.normal) - n).norm(), 2e-2) << a.name << " " << b.name;
@@ -159,8 +159,7 @@ TEST(RoundGap, KeepsTheMouthOfATubeOpen) {
         }
       // The tube's wall is not penetrated.
       if (least < 0.0 || inner < 0.0) continue;
-      const Gap<double> g =
-          gap({GapKind::round_round, 0, 0, 1.0, Fade::none}, b, tube, at_b, at_tube);
+      const Gap<double> g = gap({GapKind::round_round, 0, 0, Fade::none}, b, tube, at_b, at_tube);
       EXPECT_GT(g.distance, -1e-3) << r.transpose();  // the samples are 8 mm apart
       if (g.feature == kInMouth) {
         ++within;

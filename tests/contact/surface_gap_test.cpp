@@ -28,7 +28,7 @@ TEST(SurfaceGap, UsesBothSidesOfAValleyAndIsSmoothAcrossIt) {
   const Shape ball = sphere("ball", 0.2);
   const Mat3 upright = Mat3::Identity();
   const auto at = [&](double x, double z) {
-    return gap({GapKind::point_surface, 0, 0, 1.0, Fade::none}, ball, valley,
+    return gap({GapKind::point_surface, 0, 0, Fade::none}, ball, valley,
                Placement<double>({x, 0.013, z}, upright, 0),
                Placement<double>(Vec3::Zero(), upright, 6));
   };

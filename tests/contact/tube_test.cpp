@@ -36,7 +36,7 @@ TEST(Tube, HasRoundSidesForBalls) {
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x = random.vector(0.8);
     const Vec3 y = place.origin + place.axes * x;
-    const Gap<double> g = gap({GapKind::point_solid, 0, 0, 1.0, Fade::none}, ball, tube,
+    const Gap<double> g = gap({GapKind::point_solid, 0, 0, Fade::none}, ball, tube,
                               Placement<double>(y, upright, 0), at_tube);
     // Before its edges, which are rounded off, the sharp ones lie nearer by √2 - 1 of the rounding.
     EXPECT_NEAR(g.distance, distance_from(x) - 0.01, (std::sqrt(2.0) - 1.0) * tube.rounding + 1e-14)
@@ -61,8 +61,8 @@ TEST(Tube, HasARoundBoreForTheEndsOfRods) {
     const Mat3 L = m.Lambda();
     for (const int which : {0, 1}) {
       const Gap<double> g =
-          gap({GapKind::part_solid, which, 0, 1.0, Fade::none}, rod, tube,
-              Placement<double>(r, L, 0), Placement<double>(Vec3::Zero(), upright, 6));
+          gap({GapKind::part_solid, which, 0, Fade::none}, rod, tube, Placement<double>(r, L, 0),
+              Placement<double>(Vec3::Zero(), upright, 6));
       const Shape part = part_of(rod, which);
       double farthest = 0.0;
       for (int i = 0; i < 400; ++i)

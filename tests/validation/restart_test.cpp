@@ -88,6 +88,24 @@ Model by_impulses(Model model) {
   return model;
 }
 
+/// Round bodies and a box on a height field, and a pen that leans in a tube.
+Model on_triangles() {
+  return read_model_text(R"(format: 1
+gravity: [0, 0, -9.81]
+bodies:
+  field: {fixed: true, shape: {height_field: {spacing: 0.1, heights: [[0, 0, 0, 0, 0], [0, 0.02, 0, 0.01, 0], [0, 0, 0, 0, 0], [0, 0.01, 0, 0.02, 0], [0, 0, 0, 0, 0]]}}}
+  cup: {fixed: true, shape: {tube: [0.06, 0.04, 0.06]}, position: [1, 0, 0]}
+  table: {fixed: true, shape: {plane: z}, position: [0, 0, -0.03]}
+  ball: {shape: {sphere: 0.04}, mass: 0.2, position: [0, 0.05, 0.05], velocity: [0.3, 0, 0]}
+  drum: {shape: {tube: [0.06, 0.04, 0.05]}, mass: 0.2, orientation: {axis: x, angle: 80 deg}, position: [0.1, -0.05, 0.06]}
+  crate: {shape: {box: [0.05, 0.04, 0.03]}, mass: 0.2, position: [-0.1, 0.02, 0.05], angular_velocity: [3, 1, 0]}
+  pen: {shape: {cylinder: [0.008, 0.1]}, mass: 0.02, orientation: {axis: y, angle: 15 deg}, position: [1.0, 0, 0.022], angular_velocity: [0, 0, 5]}
+contacts: {default: {friction: 0.3}}
+analysis: {duration: 0.2 s, step: 1 ms}
+)",
+                         "triangles.yaml");
+}
+
 std::vector<RestartCase> cases() {
   return {
       {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
@@ -108,6 +126,8 @@ std::vector<RestartCase> cases() {
       {"RopeOnAPad", rope_on_pad()},
       {"RopeOverATube", rope("{tube: [0.1, 0.08, 0.1]}")},
       {"SpheresInABinByImpulses", by_impulses(touching("spheres_in_a_bin", 0.6))},
+      {"OnTriangles", on_triangles()},
+      {"OnTrianglesByImpulses", by_impulses(on_triangles())},
   };
 }
 

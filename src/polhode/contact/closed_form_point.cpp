@@ -126,7 +126,7 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
     report->normal = n;
     report->point = c;
     report->after = data.history.without_bristles();
-    report->work.stored = data.pair.weight * data.normal.energy(gap_n1);
+    report->work.stored = data.normal.energy(gap_n1);
     report->work.dissipated = (normal.lambda - normal.elastic) * (gap_n - gap_n1);
     report->normal_loss = report->work.dissipated;
   }

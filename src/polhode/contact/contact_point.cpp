@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/contact/closed_form_point.hpp>
 #include <polhode/contact/contact_point.hpp>
+#include <polhode/contact/fading.hpp>
 #include <polhode/contact/point_weight.hpp>
 #include <polhode/contact_laws/bristle.hpp>
 
@@ -12,32 +13,6 @@ namespace {
 constexpr double kNoTurn = 1e-6, kNoMove = 1e-6;
 /// Largest shift of the common point per unit rotation, as a part of L.
 constexpr double kLargestShift = 0.1;
-
-/// m of a Fade: x(2 − x) of x = sin²/fade_square < 1. y is the cosine.
-template <class T>
-T fading(const FeaturePair& pair, const T& y) {
-  const T x = (1.0 - y * y) * (1.0 / pair.fade_square);
-  const bool near = value(x) < 1.0;
-  const T m = near ? x * (2.0 - x) : T(1.0);
-  if (pair.fade == Fade::parallel) return m;
-  return near && value(y) < 0.0 ? 1.0 - m : T(0.0);
-}
-
-/// (m(y_1) − m(y_0))/(y_1 − y_0), evaluated without the difference where both fade.
-template <class T>
-T fading_quotient(const FeaturePair& pair, double y_0, const T& y_1) {
-  const double square = pair.fade_square;
-  const double x_0 = (1.0 - y_0 * y_0) / square;
-  const T x_1 = (1.0 - y_1 * y_1) * (1.0 / square);
-  const bool in_0 = x_0 < 1.0, in_1 = value(x_1) < 1.0;
-  if (!in_0 && !in_1) return T(0.0);
-  const double sign = pair.fade == Fade::parallel ? 1.0 : -1.0;
-  if (pair.fade == Fade::flat && (in_0 ? y_0 : value(y_1)) > 0.0) return T(0.0);
-  if (in_0 && in_1) return sign * (-1.0 / square) * ((y_0 + y_1) * (2.0 - x_0 - x_1));
-  const T change = y_1 - y_0;
-  if (std::abs(value(change)) < 1e-14) return T(0.0);
-  return (fading(pair, y_1) - fading(pair, y_0)) / change;
-}
 
 /// A cheap point near the contact at t_n, the origin in which gaps are computed.
 Vec3 near_contact(const PointData& data, const BodyStep& a) {
@@ -64,9 +39,9 @@ V3<T> average(const V3<double>& at_n, const V3<T>& at_n1, double weight) {
 
 double weight_at(const PointData& data, const Placement<double>& at_a,
                  const Placement<double>& at_b) {
-  if (data.pair.fade == Fade::none) return data.pair.weight;
+  if (data.pair.fade == Fade::none) return 1.0;
   const FadeDirections<double> f = fade_directions(data.pair, *data.a, *data.b, at_a, at_b);
-  return data.pair.weight * fading(data.pair, dot(f.a, f.b));
+  return fading(data.pair, dot(f.a, f.b));
 }
 
 namespace {
@@ -115,8 +90,7 @@ class Evaluation {
     w.moment_a = cross(point_N_ - r_a_, w.force) + couple_;
     w.moment_b = -cross(point_N_ - r_b_, w.force) - couple_;
     if (report) start_report(*report, g_0, g_1);
-    if (data_.friction.acts() && !data_.history.in_impact() && data_.pair.weight > 0.0)
-      add_friction(w, report);
+    if (data_.friction.acts() && !data_.history.in_impact()) add_friction(w, report);
     if (report) report->force = value(w.force);
     return w;
   }
@@ -200,13 +174,11 @@ class Evaluation {
     if (!spring) add_share(g_1);
     couple_ = constant<T>(Vec3::Zero());
     if (data_.pair.fade != Fade::none) fade(g_0, g_1);
-    lambda_ = data_.pair.weight * lambda_;
-    couple_ = data_.pair.weight * couple_;
   }
 
   /// Adds the part of the force taken at the end of the step. @eq{contact-plastic}
   void add_share(const Gap<T>& g_1) {
-    if (data_.end_share > 0.0 && data_.pair.weight > 0.0)
+    if (data_.end_share > 0.0)
       lambda_ =
           (1.0 - data_.end_share) * lambda_ + data_.end_share * data_.normal.force(g_1.distance);
   }
@@ -279,8 +251,7 @@ class Evaluation {
     const V3<T> moved = e * (g_1.point - g_0.point);
     point_N_ = point_N_ + moved;
     c_ = c_ + moved;
-    lambda_ = lambda_ + (e * data_.pair.weight) *
-                            (data_.normal.force(g_1.distance) - data_.normal.force(g_0.distance));
+    lambda_ = lambda_ + e * (data_.normal.force(g_1.distance) - data_.normal.force(g_0.distance));
     r_a_ = average(n_a_.position(), e_a_.position(), context_.ga.alpha_f);
     r_b_ = average(n_b_.position(), e_b_.position(), context_.ga.alpha_f);
   }

@@ -372,7 +372,7 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SpherePairCache& balls = balls_[i];
     const Point& p = points_[i];
-    if (p.sensor || p.data.pair.weight != 1.0) continue;
+    if (p.sensor) continue;
     if (balls.gap_n > balls.reach + 2.0 * kPushed * farthest) continue;
     const PointHistory& h = p.data.history;
     PredictedContact& m = contacts.emplace_back();

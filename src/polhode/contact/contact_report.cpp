@@ -23,9 +23,7 @@ std::vector<ShapePairReport> ContactSet::reports() const {
       last = p.key[0];
     }
     ShapePairReport& r = list.back();
-    // Points of negative weight only correct the sum of others: they do not lie on a surface.
-    if (p.data.pair.weight > 0.0)
-      r.gap = std::min(r.gap, p.touched || p.report.gap_n1 != 0.0 ? p.report.gap_n1 : p.gap_n);
+    r.gap = std::min(r.gap, p.touched || p.report.gap_n1 != 0.0 ? p.report.gap_n1 : p.gap_n);
     if (!p.touched) continue;
     const double sign = turned ? -1.0 : 1.0;
     r.force += sign * p.report.force;
@@ -37,7 +35,7 @@ std::vector<ShapePairReport> ContactSet::reports() const {
     if (p.unresolved) ++r.unresolved;
     if (!p.open_stiffness && p.data.normal.is_near_floor(p.report.gap_n1)) r.near_floor = true;
     if (p.report.normal_force == 0.0) continue;
-    r.points += p.data.pair.weight > 0.0 ? 1 : -1;
+    ++r.points;
     if (p.report.after.slips)
       r.status = ContactStatus::slip;
     else if (r.status == ContactStatus::open)
@@ -98,7 +96,7 @@ std::vector<ShapeOverlap> ContactSet::overlaps_at(const State& state,
   begin_step(state, instants, context);
   Overlaps deepest;
   for (const Point& p : points_) {
-    if (p.sensor || p.data.pair.weight < 0.0 || p.gap_n > -p.data.normal.tolerance) continue;
+    if (p.sensor || p.gap_n > -p.data.normal.tolerance) continue;
     ShapeOverlap& found = deepest[std::minmax(p.a, p.b)];
     if (found.depth >= -p.gap_n) continue;
     const BodyStep &a = step_of(p.a, instants), &b = step_of(p.b, instants);

@@ -57,6 +57,8 @@ struct PlacedShape {
 /// All owners, in a switch.
 inline constexpr int kEveryOwner = std::numeric_limits<int>::max();
 
+struct BothPlaced;  // impulse_places.hpp
+
 /// Contact between the shapes of bodies.
 ///
 /// Candidates are found again when a body has moved by more than its margin; they are sorted, so
@@ -243,8 +245,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   [[nodiscard]] ImpulsePoint impulse_point(int point, const Gap<double>& at,
                                            std::span<const BodyStep> steps) const;
   [[nodiscard]] std::vector<Gap<double>> places_over_surface(int point, double reach,
-                                                             const Placement<double>& at_a,
-                                                             const Placement<double>& at_b) const;
+                                                             const BothPlaced& at) const;
   [[nodiscard]] std::optional<double> gap_at_end_of(const ImpulsePoint& at,
                                                     std::span<const BodyStep> steps) const;
   void find_places(int point, std::span<const BodyStep> steps, double dt, bool again,

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <polhode/contact/feature_pairs.hpp>
+#include <polhode/contact/mouth_rim.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/nearest.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
@@ -19,10 +20,24 @@ namespace {
 /// Angle at which sides count as parallel, times their half length over the sum of their radii.
 constexpr double kParallel = 0.02;
 
+/// Square of the sine of the angle between a bar and the axis of a tube up to which the bar has no
+/// direction across the mouth, and range above it in which its contacts become those of one.
+constexpr double kSteepFrom = 2e-3, kSteepRange = 8e-3;
+
 double radius_of(const Shape& s) { return s.half[0] + s.rounding; }
 
-/// Whether the shape has a straight side about its axis.
-bool has_side(const Shape& s) { return is_tube(s) || (s.round() && s.flat_ends.size() == 2); }
+bool is_cone(const Shape& s) { return s.round() && s.flat_ends.size() == 1; }
+bool is_cylinder(const Shape& s) { return s.round() && s.flat_ends.size() == 2; }
+/// Whether the shape is a cylinder that is longer than wide; others lie flat on a rim.
+bool is_bar(const Shape& s) { return is_cylinder(s) && s.half[2] > s.half[0]; }
+
+/// Whether the shape has a straight side, or flank, about its axis.
+bool has_side(const Shape& s) { return is_tube(s) || (s.round() && !s.flat_ends.empty()); }
+
+/// Angle between the axis and the side; zero but for a cone.
+double flank_angle(const Shape& s) {
+  return is_cone(s) ? std::atan2(s.half[0], 2.0 * s.half[2]) : 0.0;
+}
 
 /// Search for feature pairs with corners and faces of `b` as seen from shape `a`, in body
 /// coordinates of b.
@@ -45,44 +60,35 @@ class Finder {
   /// `a` near b.
   void points(const Finder& other) {
     if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
+    // A tube is in contact with a plane as a cylinder is.
+    const bool stands = is_tube(a_) && b_.solid == Solid::half_space;
+    if (is_tube(a_) && !stands) return points_of_tube(other);
     // A ball has a single corner; the other shape's corners against it would duplicate the pair.
     if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
     const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
-    // A tube meets a plane as a cylinder does.
-    const bool stands = stands_on_plane(), some = a_.tree && !stands;
+    const bool some = a_.tree && !stands;
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
       if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
-      // Corners of an outer rim count against round shapes alone; elsewhere its ring does.
-      const bool by_ring = is_round_tube() && !is_tube(b_) && !b_.round();
-      if (by_ring && !on_inner_side(a_, i)) continue;
-      const Vec3 x = in_b(a_.corners[i]);
-      if (b_.solid == Solid::surface) {
-        if (out_of_ball(x, 0.0) || !in_region({x})) continue;
-        if (is_tube(b_))
-          add({GapKind::point_solid, i, 0, 1.0, Fade::none});
-        else
-          add({GapKind::point_surface, i, 0, 1.0, Fade::none});
-        continue;
-      }
       // A fixed point of a rim acts on a plane where the rim lies flat.
       const bool rim = stands || i < a_.rim_corners;
-      add({GapKind::point_solid, i, 0, 1.0,
-           rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none});
+      add_point(i, rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none);
     }
   }
 
   void edges(const Finder& other) {
+    const bool tubes = is_tube(a_) && is_tube(b_);
+    if (!tubes && (is_round_tube() || other.is_round_tube())) return;  // by their rims
     for (int i : other.edges_) {
-      if (!a_.edges[i].convex || (is_round_tube() && !is_inner_edge(a_, i))) continue;
+      if (!a_.edges[i].convex || (tubes && !is_inner_edge(a_, i))) continue;
       const Vec3 p = in_b(a_.corners[a_.edges[i].i]), u = in_b(a_.corners[a_.edges[i].j]) - p;
       if (out_of_ball(p + 0.5 * u, 0.5 * u.norm()) || !in_region({p, p + u})) continue;
       for (int j : edges_) {
-        if (!b_.edges[j].convex || (other.is_round_tube() && !is_inner_edge(b_, j))) continue;
+        if (!b_.edges[j].convex || (tubes && !is_inner_edge(b_, j))) continue;
         const Vec3 &q = b_.corners[b_.edges[j].i], v = b_.corners[b_.edges[j].j] - q;
         const SegmentsRegion r = nearest_on_segments(p, u, q, v);
         if ((p + r.s * u - q - r.t * v).norm() < reach())
-          push({GapKind::edge_edge, i, j, 1.0, Fade::parallel});
+          push({GapKind::edge_edge, i, j, Fade::parallel});
       }
     }
   }
@@ -94,41 +100,60 @@ class Finder {
     const int parts = whole ? 1 : static_cast<int>(a_.flat_ends.size());
     const Fade fade = whole ? Fade::none : Fade::parallel;
     if (b_.solid == Solid::half_space) {
-      for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, 1.0, fade});
+      for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, fade});
       return;
     }
     if (out_of_ball(in_b(a_.bound_centre), a_.bound_radius)) return;
     const bool round_b = b_.round() || is_tube(b_), sides = has_side(a_) && has_side(b_);
     if (round_b && !swapped_) {
       if (sides)
-        add_sides({GapKind::round_round, 0, 0, 1.0, Fade::parallel}, radius_of(b_), b_.half[2]);
+        add_sides({GapKind::round_round, 0, 0, Fade::parallel}, radius_of(b_), b_.half[2]);
       else
-        add({GapKind::round_round, 0, 0, 1.0, Fade::none});
+        add({GapKind::round_round, 0, 0, Fade::none});
     }
     // Contact of parallel sides, at the discs at their ends.
     if (sides || (has_side(a_) && b_.solid == Solid::segment))
-      for (int i = 0; i < parts; ++i) add({GapKind::end_round, i, 0, 1.0, Fade::none});
+      for (int i = 0; i < parts; ++i) add({GapKind::end_round, i, 0, Fade::none});
+    if (is_tube(a_) && is_bar(b_)) rims();
     if (b_.round() || (is_tube(a_) && !is_round_tube())) return;
     const bool tubes = is_tube(a_) && is_tube(b_);
     for (int i = 0; i < parts && !tubes; ++i)
-      if (b_.solid == Solid::surface) {
-        add({GapKind::part_surface, i, 0, 1.0, Fade::none});
+      if (is_tube(b_)) {
+        add({GapKind::part_solid, i, 0, Fade::none});
+        add({GapKind::part_end, i, 0, Fade::none});
+      } else if (b_.solid == Solid::surface) {
+        add({GapKind::part_surface, i, 0, Fade::none});
       } else if (b_.solid == Solid::polyhedron) {
-        add({GapKind::part_solid, i, 0, 1.0, Fade::none});
+        add({GapKind::part_solid, i, 0, Fade::none});
       }
-    if (is_tube(b_) && !tubes)
-      for (int i = 0; i < parts; ++i) add({GapKind::part_solid, i, 0, 1.0, Fade::none});
+    if (is_tube(a_) && !tubes) rims();
     // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
-    // part; only capsules have an edge without faces.
-    if (whole && b_.solid != Solid::segment) return;
+    // part: only edges without faces are left, capsules and rims of tubes.
+    if (whole && b_.solid != Solid::segment && !is_tube(b_)) return;
     for (int j : edges_) {
       if (!b_.edges[j].convex || (is_tube(b_) && !is_inner_edge(b_, j))) continue;
-      if (!has_side(a_)) {
-        add({GapKind::round_edge, 0, j, 1.0, Fade::none});
+      if (!has_side(a_) || (is_tube(b_) && !tubes)) {
+        add({GapKind::round_edge, 0, j, is_bar(a_) ? Fade::aligned : Fade::none, kSteepRange,
+             kSteepFrom});
         continue;
       }
       const double length = (b_.corners[b_.edges[j].j] - b_.corners[b_.edges[j].i]).norm();
-      add_sides({GapKind::round_edge, 0, j, 1.0, Fade::parallel}, b_.rounding, 0.5 * length);
+      add_sides({GapKind::round_edge, 0, j, Fade::parallel}, b_.rounding, 0.5 * length);
+    }
+  }
+
+  /// Adds the inner rims of a tube a over edges of b or a cylinder. Bars nearly along the axis have
+  /// one contact with a rim, or cylinders those with its short arcs; others have two.
+  void rims() {
+    if (is_plug()) return;
+    for (int number = 0; number < (b_.round() ? kHalfRims : kRimArcs); ++number) {
+      const Fade fade = is_whole_rim(number) ? Fade::aligned : Fade::parallel;
+      if (b_.round()) {
+        add({GapKind::rim_bar, number, 0, fade, kSteepRange, kSteepFrom});
+        continue;
+      }
+      for (int j : edges_)
+        if (b_.edges[j].convex) add({GapKind::rim_edge, number, j, fade, kSteepRange, kSteepFrom});
     }
   }
 
@@ -200,13 +225,33 @@ class Finder {
     return region_.intersects(box);
   }
 
-  [[nodiscard]] bool stands_on_plane() const {
-    return is_tube(a_) && b_.solid == Solid::half_space;
-  }
   /// Whether a is a tube whose outer side and rims act, instead of its polygon.
   [[nodiscard]] bool is_round_tube() const {
     return is_tube(a_) && (b_.solid == Solid::polyhedron || b_.solid == Solid::segment ||
                            b_.round() || b_.solid == Solid::surface);
+  }
+  /// Adds points of a tube a: corners of its outer rims against round bodies, those of its inner
+  /// rims against a ball or capsule that does not fit into it and may touch all of a rim at once,
+  /// and fixed points of its ends against what they stand on or what lies on them.
+  void points_of_tube(const Finder& other) {
+    const bool plug = is_plug();
+    if (plug || is_tube(b_) || b_.round())
+      for (int i : other.corners_)
+        if (is_tube(b_) || on_inner_side(a_, i) == plug) add_point(i, Fade::none);
+    const bool lid = is_cylinder(b_);
+    if (lid || b_.solid == Solid::polyhedron || (b_.solid == Solid::surface && !is_tube(b_)))
+      for (int i : a_.face_points) add_point(i, lid ? Fade::aligned : Fade::none);
+  }
+  /// Whether b is a ball or capsule that does not fit into the tube a.
+  [[nodiscard]] bool is_plug() const {
+    return (b_.solid == Solid::ball || b_.solid == Solid::segment) &&
+           a_.rounding + b_.rounding > a_.half[1];
+  }
+  void add_point(int i, Fade fade) {
+    if (b_.solid != Solid::surface) return add({GapKind::point_solid, i, 0, fade});
+    const Vec3 x = in_b(a_.corners[i]);
+    if (out_of_ball(x, 0.0) || !in_region({x})) return;
+    add({is_tube(b_) ? GapKind::point_solid : GapKind::point_surface, i, 0, fade});
   }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
@@ -225,6 +270,12 @@ class Finder {
   void add_sides(FeaturePair pair, double radius, double half) {
     const double angle = kParallel * (radius_of(a_) + radius) / std::min(a_.half[2], half);
     pair.fade_square = std::min(pair.fade_square, angle * angle);
+    if (is_cone(a_) || is_cone(b_)) {
+      const double of_a = flank_angle(a_), of_b = flank_angle(b_);
+      pair.fade = Fade::flank;
+      pair.aligned = std::cos(of_a + of_b);
+      pair.opposed = -std::cos(of_a - of_b);
+    }
     add(pair);
   }
   const Shape &a_, &b_;

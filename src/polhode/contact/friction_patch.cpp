@@ -49,7 +49,7 @@ double slip_speed(const PointReport& r, const BodyStep& a, const BodyStep& b, do
 bool belongs(const PointData& d) {
   const FrictionLaw& f = d.friction;
   const bool round = f.mu_across <= 0.0 || f.mu_across == f.mu;
-  return f.mu > 0.0 && f.mu_static > f.mu && round && d.pair.weight > 0.0;
+  return f.mu > 0.0 && f.mu_static > f.mu && round;
 }
 
 double held_by(const PointData& d) { return d.friction.stiffness * d.history.bristle.norm(); }

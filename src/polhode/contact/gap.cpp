@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/mouth_rim.hpp>
 #include <polhode/contact/round_solids/round_solid.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
@@ -137,6 +138,12 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
       return round_over_round(a, b, at_a, at_b);
     case GapKind::end_round:
       return end_over_round(a, pair.i, b, at_a, at_b);
+    case GapKind::part_end:
+      return part_over_end(part_of(a, pair.i), b, at_a, at_b);
+    case GapKind::rim_edge:
+      return rim_over_edge(a, pair.i, b, pair.j, at_a, at_b);
+    case GapKind::rim_bar:
+      return rim_over_bar(a, pair.i, b, at_a, at_b);
   }
   return {};
 }
@@ -149,11 +156,12 @@ FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const
   };
   if (pair.kind == GapKind::edge_edge)
     return {at_a.vector(edge(a, pair.i)), at_b.vector(edge(b, pair.j))};
-  if (pair.kind == GapKind::round_edge)
+  if ((pair.kind == GapKind::round_edge && pair.fade != Fade::aligned) ||
+      pair.kind == GapKind::rim_edge)
     return {at_a.vector(Vec3(a.axes.col(2))), at_b.vector(edge(b, pair.j))};
   // A rim faces along the axis to its own side.
-  const bool low =
-      pair.kind == GapKind::point_solid && (a.corners[pair.i] - a.centre).dot(a.axes.col(2)) < 0.0;
+  const bool low = pair.kind == GapKind::point_solid && pair.fade == Fade::flat &&
+                   (a.corners[pair.i] - a.centre).dot(a.axes.col(2)) < 0.0;
   return {at_a.vector(low ? Vec3(-a.axes.col(2)) : Vec3(a.axes.col(2))),
           at_b.vector(b.axes.col(2))};
 }

@@ -19,12 +19,20 @@ enum class GapKind {
   round_edge,      ///< The round solid of a, or a tube from outside, edge j of b.
   round_round,     ///< The round solids of a and b, tubes from outside.
   end_round,       ///< Disc at end i of the round a or tube, the round solid, tube or segment b.
+  part_end,        ///< Part i of the round a, the nearer end of the tube b.
+  rim_edge,        ///< Arc i of the inner rims of the tube a, edge j of b.
+  rim_bar,         ///< Arc i of the inner rims of the tube a, the cylinder b.
 };
 
 /// Whether side a of a feature pair is a corner.
 [[nodiscard]] constexpr bool is_of_corner(GapKind kind) {
   return kind == GapKind::point_solid || kind == GapKind::point_triangle ||
          kind == GapKind::point_surface;
+}
+
+/// Whether side a of a feature pair is an inner rim of a tube.
+[[nodiscard]] constexpr bool is_of_rim(GapKind kind) {
+  return kind == GapKind::rim_edge || kind == GapKind::rim_bar;
 }
 
 /// Whether a feature pair may have a tube on a side, for which its hull stands.
@@ -37,7 +45,10 @@ enum class GapKind {
 enum class Fade {
   none,
   parallel,  ///< Fades out as the directions become parallel: m = x(2 − x), x = sin²/fade_square.
+  flank,     ///< The same as the flank of a cone becomes parallel to a side, an edge or a flank:
+             ///< x = ((y − aligned)(y − opposed)/fade_square)², y the cosine of the angle.
   flat,      ///< Nonzero only while they are nearly opposite: 1 − m.
+  aligned,   ///< Nonzero only while they are nearly parallel, in either sense: 1 − m.
 };
 
 /// Two features, of shapes a and b, that can be in contact. A contact point belongs to one pair;
@@ -45,9 +56,11 @@ enum class Fade {
 struct FeaturePair {
   GapKind kind = GapKind::point_solid;
   int i = 0, j = 0;
-  double weight = 1.0;  ///< Of its potential.
   Fade fade = Fade::none;
   double fade_square = 1e-3;  ///< Square of the sine of the angle below which it fades.
+  double fade_from = 0.0;     ///< Of that at which it has vanished; fade_square is added to this.
+  /// Cosines of the angle between the directions at which flanks are parallel.
+  double aligned = 1.0, opposed = -1.0;
 };
 
 /// Distance of two features at an instant. The normal points from b to a.

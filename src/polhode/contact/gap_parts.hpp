@@ -46,6 +46,10 @@ template <class T>
 template <class T>
 [[nodiscard]] Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair,
                               const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b);
+/// Gap of the lowest point of a part in front of an end of a tube.
+template <class T>
+[[nodiscard]] Gap<T> part_over_end(const Shape& part, const Shape& tube, const Placement<T>& at_a,
+                                   const Placement<T>& at_tube);
 /// Gap of a ball of radius rho around the point x against the whole surface of b.
 /// @param reach  Features with larger gaps than this do not count besides a nearer one [m].
 template <class T>

@@ -224,8 +224,7 @@ double ContactSet::weight_now(const Point& p, const State& state) const {
 /// @eq{turn-law}
 std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
   PointHistory& h = p.data.history;
-  if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
-    return {};
+  if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor) return {};
   if (!(p.report.normal_force > 0.0)) return {};
   const bool lasts = !h.in_impact();
   if (h.phase == ContactPhase::rest) return {};
@@ -315,7 +314,7 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
     const Point& p = points_[i];
     const PointHistory& h = p.data.history;
     const int a = shapes_[p.a].body, b = shapes_[p.b].body;
-    if (!h.closed || h.in_impact() || p.sensor || p.data.pair.weight < 0.0) continue;
+    if (!h.closed || h.in_impact() || p.sensor) continue;
     if (is_slack(p, h.gap)) continue;
     if (p.restitution == 1.0 || (p.damped && h.approach < 0.0)) continue;
     const bool theirs = std::binary_search(bodies.begin(), bodies.end(), a) ||

@@ -35,14 +35,13 @@ const Gap<double>* end_of(const Vec3& normal, const Vec3& place,
 
 /// Gaps of a corner or part at the places of a surface that are nearer than `reach`.
 std::vector<Gap<double>> ContactSet::places_over_surface(int point, double reach,
-                                                         const Placement<double>& at_a,
-                                                         const Placement<double>& at_b) const {
+                                                         const BothPlaced& at) const {
   const PointData& d = points_[point].data;
   std::vector<Gap<double>> gaps;
   if (d.pair.kind == GapKind::part_surface)
-    part_gaps(part_of(*d.a, d.pair.i), reach, *d.b, at_a, at_b, gaps);
+    part_gaps(part_of(*d.a, d.pair.i), reach, *d.b, at.a, at.b, gaps);
   else
-    point_gaps(value(at_a.point(d.a->corners[d.pair.i])), d.a->rounding, reach, *d.b, at_b, gaps);
+    point_gaps(value(at.a.point(d.a->corners[d.pair.i])), d.a->rounding, reach, *d.b, at.b, gaps);
   return gaps;
 }
 
@@ -59,12 +58,10 @@ void ContactSet::find_places(int point, std::span<const BodyStep> steps, double 
   PlacesAtStart& known = start_places_[point];
   if (!(known.reach >= touch + 2.0 * way)) {
     known.reach = touch + 2.0 * way;
-    known.gaps = places_over_surface(point, known.reach, Placement<double>(a.r_n, a.Lambda_n, 0),
-                                     Placement<double>(b.r_n, b.Lambda_n, 6));
+    known.gaps = places_over_surface(point, known.reach, BothPlaced::at_start(a, b));
   }
   const std::vector<Gap<double>>& at_start = known.gaps;
-  const auto at_end = places_over_surface(point, touch, Placement<double>(a.r_n1, a.Lambda_n1, 0),
-                                          Placement<double>(b.r_n1, b.Lambda_n1, 6));
+  const auto at_end = places_over_surface(point, touch, BothPlaced::at_end(a, b));
   const auto listed = [&](const auto& is_same) {
     return std::any_of(list.begin(), list.end(),
                        [&](const ImpulsePoint& at) { return at.number == point && is_same(at); });
@@ -118,11 +115,16 @@ std::optional<double> ContactSet::gap_at_end_of(const ImpulsePoint& at,
                                                 std::span<const BodyStep> steps) const {
   const Point& p = points_[at.number];
   const BodyStep &a = steps[balls_[at.number].a], &b = steps[balls_[at.number].b];
+  if (p.data.pair.kind == GapKind::rim_edge) {
+    const BothPlaced end = BothPlaced::at_end(a, b);
+    const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, end.a, end.b);
+    // Behind each other the distance of the curves grows again.
+    const bool passed = value(g.normal).dot(at.normal_n) < 0.0;
+    return passed ? -g.distance - 2.0 * (p.data.a->rounding + p.data.b->rounding) : g.distance;
+  }
   if (!is_over_surface(p.data.pair.kind)) return gap_at_end(at.number, a, b);
   const double reach = surface_reach(*p.data.a, *p.data.b) + std::max(0.0, at.gap);
-  const auto at_end =
-      places_over_surface(at.number, reach, Placement<double>(a.r_n1, a.Lambda_n1, 0),
-                          Placement<double>(b.r_n1, b.Lambda_n1, 6));
+  const auto at_end = places_over_surface(at.number, reach, BothPlaced::at_end(a, b));
   const auto known = start_places_.find(at.number);
   const Gap<double>* same = known == start_places_.end()
                                 ? same_contact(at_end, at.normal_n)
@@ -136,9 +138,8 @@ double ContactSet::nearest_at_end(int point, std::span<const BodyStep> steps) co
   const BodyStep &a = steps[balls_[point].a], &b = steps[balls_[point].b];
   const double all = gap_at_end(point, a, b);
   if (!is_over_surface(p.data.pair.kind) || all > surface_reach(*p.data.a, *p.data.b)) return all;
-  const auto at_end = places_over_surface(point, surface_reach(*p.data.a, *p.data.b),
-                                          Placement<double>(a.r_n1, a.Lambda_n1, 0),
-                                          Placement<double>(b.r_n1, b.Lambda_n1, 6));
+  const auto at_end =
+      places_over_surface(point, surface_reach(*p.data.a, *p.data.b), BothPlaced::at_end(a, b));
   return at_end.empty() ? all : at_end.front().distance;
 }
 

@@ -17,6 +17,18 @@ inline constexpr double kPasses = 0.5;
   return kind == GapKind::point_surface || kind == GapKind::part_surface;
 }
 
+/// Placements of both bodies at an instant of a step, which they refer to.
+struct BothPlaced {
+  Placement<double> a, b;
+
+  [[nodiscard]] static BothPlaced at_start(const BodyStep& a, const BodyStep& b) {
+    return {{a.r_n, a.Lambda_n, 0}, {b.r_n, b.Lambda_n, 6}};
+  }
+  [[nodiscard]] static BothPlaced at_end(const BodyStep& a, const BodyStep& b) {
+    return {{a.r_n1, a.Lambda_n1, 0}, {b.r_n1, b.Lambda_n1, 6}};
+  }
+};
+
 /// The gap with the normal closest to n, if they belong to one contact; null: there is none.
 [[nodiscard]] const Gap<double>* same_contact(const std::vector<Gap<double>>& gaps, const Vec3& n);
 

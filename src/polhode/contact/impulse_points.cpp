@@ -5,6 +5,8 @@
 
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/contact/impulse_places.hpp>
+#include <polhode/contact/mouth_rim.hpp>
+#include <polhode/contact/point_weight.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
@@ -44,21 +46,29 @@ constexpr double kMaxShift = 0.1, kMaxTilt = 0.1;
 /// Displacement of two edges in a step, as a part of the size, above which they are followed.
 constexpr double kFast = 0.02;
 
-/// Weight of a feature pair's potential, see Fade.
-double weight_of(const PointData& d, const Placement<double>& at_a, const Placement<double>& at_b) {
-  if (d.pair.fade == Fade::none) return 1.0;
-  const FadeDirections<double> f = fade_directions(d.pair, *d.a, *d.b, at_a, at_b);
-  const Vec3 e = value(f.a), g = value(f.b);
-  const double y = e.dot(g) / std::sqrt(e.squaredNorm() * g.squaredNorm());
-  const double x = std::min(1.0, (1.0 - y * y) / d.pair.fade_square), m = x * (2.0 - x);
-  if (d.pair.fade == Fade::parallel) return m;
-  return y < 0.0 ? 1.0 - m : 0.0;
+/// Whether a feature pair is of two edges, or of an edge and a rim.
+bool is_of_edges(GapKind kind) { return kind == GapKind::edge_edge || kind == GapKind::rim_edge; }
+
+/// Corrects the gap of the inner rim of a tube and an edge, as mend_edges().
+bool mend_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
+  const Shape::Edge& f = d.b->edges[d.pair.j];
+  const Vec3 n = value(g.normal), c = value(g.point);
+  const Vec3 p = b.r_n + b.Lambda_n * d.b->corners[f.i];
+  const Vec3 u = b.Lambda_n * (d.b->corners[f.j] - d.b->corners[f.i]);
+  const double t = (c - p).dot(u) / u.squaredNorm();
+  if (!(t > 0.0 && t < 1.0)) return false;
+  const Vec3 out = a.Lambda_n * out_of_rim(*d.a, a.Lambda_n.transpose() * (c - a.r_n));
+  if (n.dot(b.Lambda_n * f.out - out) >= 0.0) return true;
+  g.distance = -g.distance - 2.0 * (d.a->rounding + d.b->rounding);
+  g.normal = -1.0 * g.normal;
+  return true;
 }
 
 /// Corrects the gap of two edges. Edges are in contact where they cross; their ends are corners,
 /// which are paired with the whole solid. Whether the cores have passed through each other follows
 /// from the outward sides of the edges.
 bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
+  if (d.pair.kind == GapKind::rim_edge) return mend_rim(d, a, b, g);
   const Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
   const auto inner = [](const Shape& s, const Shape::Edge& edge, const BodyStep& step,
                         const Vec3& x) {
@@ -218,14 +228,14 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     at.normal = constant<double>(p.normal_n);
     at.point = constant<double>(p.place_n);
     const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
-    if (p.data.pair.kind == GapKind::edge_edge) {
+    if (is_of_edges(p.data.pair.kind)) {
       if (!acted && least_gap_at_end(p, a, b) > 0.0) continue;
       at = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
       if (!mend_edges(p.data, a, b, at)) continue;
     }
     ImpulsePoint point = impulse_point(i, at, steps);
     if (!acted && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
-    if (!balls_[i].holds && weight_of(p.data, at_a, at_b) < kMinWeight) continue;
+    if (!balls_[i].holds && weight_at(p.data, at_a, at_b) < kMinWeight) continue;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
     p.listed = true;
@@ -263,13 +273,12 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     if (is_over_surface(p.data.pair.kind)) {
       const double way = p.gap_n - least_gap_at_end(p, a, b);
       const double reach = surface_reach(*p.data.a, *p.data.b) + std::max(0.0, at.gap) + 0.25 * way;
-      const auto places = places_over_surface(at.number, reach, at_a, at_b);
+      const auto places = places_over_surface(at.number, reach, {at_a, at_b});
       if (const Gap<double>* same = same_contact(places, at.normal_n)) g = *same;
     } else {
       g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
     }
-    const bool edges = p.data.pair.kind == GapKind::edge_edge;
-    if (edges) mend_edges(p.data, a, b, g);
+    if (is_of_edges(kind)) mend_edges(p.data, a, b, g);
     const Vec3 n = value(g.normal);
     if (n.dot(at.normal_n) > kPasses) {
       at.normal = n.normalized();
@@ -279,7 +288,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
       at.place = at.place_n + 0.5 * a.u;
       continue;
     }
-    if (edges) continue;
+    if (kind == GapKind::edge_edge) continue;
     if (const std::optional<double> end = gap_at_end_of(at, steps))
       follow_gap(p.data, *end - at.gap, a, b, at);
   }
@@ -305,15 +314,14 @@ std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> 
     const double least = least_gap_at_end(p, a, b);
     if (least > 0.0 || p.gap_n - least < kFast * std::min(p.data.a->detail, p.data.b->detail))
       continue;
-    const Placement<double> from_a(a.r_n, a.Lambda_n, 0), from_b(b.r_n, b.Lambda_n, 6),
-        to_a(a.r_n1, a.Lambda_n1, 0), to_b(b.r_n1, b.Lambda_n1, 6);
+    const BothPlaced from = BothPlaced::at_start(a, b), to = BothPlaced::at_end(a, b);
     const Shape &A = *p.data.a, &B = *p.data.b;
     const auto [e, f] = std::pair(p.data.pair.i, p.data.pair.j);
     const bool again =
         last >= 0 && points_[last].key[0] == p.key[0] && points_[last].data.pair.i == e;
     if (!by_tube) last = i;
-    if ((!again && !by_tube && pierces(A, e, B, to_a, to_b) && !pierces(A, e, B, from_a, from_b)) ||
-        (pierces(B, f, A, to_b, to_a) && !pierces(B, f, A, from_b, from_a)))
+    if ((!again && !by_tube && pierces(A, e, B, to.a, to.b) && !pierces(A, e, B, from.a, from.b)) ||
+        (pierces(B, f, A, to.b, to.a) && !pierces(B, f, A, from.b, from.a)))
       return std::pair(shapes_[p.a].body, shapes_[p.b].body);
   }
   return std::nullopt;

@@ -27,8 +27,6 @@ double distance_of(const Shape& a, const Shape& b, const Placement<double>& at_a
     found.clear();
     near_feature_pairs(a, b, at_a, at_b, near, found);
     for (const OrderedPair& f : found) {
-      // Points of negative weight only correct the sum of others: they do not lie on a surface.
-      if (!(f.pair.weight > 0.0)) continue;
       const Gap<double> g =
           f.swapped ? gap(f.pair, b, a, at_b, at_a) : gap(f.pair, a, b, at_a, at_b);
       least = std::min(least, g.distance);

@@ -37,7 +37,6 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace triangle(int t) const {
     Nearest best = within_reach();
-    if (is_tube(b) && !is_end_face(b, t)) return place(best);
     part.face(b, t, sides, best);
     if (best.kind != Nearest::face)
       for (const int e : b.triangle_edges[t]) part.edge(b, e, best);
@@ -45,7 +44,6 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace edge(int e) const {
     Nearest best = within_reach();
-    if (is_tube(b) && !is_across_end(b, e)) return place(best);
     part.edge(b, e, best);
     return place(best);
   }
@@ -55,7 +53,6 @@ struct SeenSurface {
     return none;
   }
   [[nodiscard]] SurfacePlace corner(int k) const {
-    if (is_tube(b)) return place({});
     return place({Nearest::corner, k, 0.0, part.corner(b.corners[k])});
   }
 };
@@ -263,6 +260,21 @@ Nearest nearest_at(const SurfacePlace& p) {
 }  // namespace
 
 template <class T>
+Gap<T> part_over_end(const Shape& part, const Shape& tube, const Placement<T>& at_a,
+                     const Placement<T>& at_tube) {
+  const V3<T> axis = at_tube.vector(tube.axes.col(2));
+  const V3<T> middle = at_tube.point(tube.centre);
+  const double side = value(dot(axis, at_a.point(part.centre) - middle)) < 0.0 ? -1.0 : 1.0;
+  const V3<T> lowest = extreme_point(part, 0, side * axis, at_a);
+  Gap<T> g = point_over_solid(lowest, part.rounding, tube, at_tube);
+  // Behind the end, in the tube, it is out of reach: there the part touches the inner side.
+  const T behind = tube.half[2] - side * dot(axis, lowest - middle);
+  if (value(g.distance) > -part.rounding - tube.rounding && value(behind) > 0.0)
+    g.distance = g.distance + behind;
+  return g;
+}
+
+template <class T>
 Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const Shape& b,
                 const Placement<T>& at_a, const Placement<T>& at_b) {
   if (is_tube(b) && pair.kind == GapKind::part_solid)
@@ -287,6 +299,12 @@ void part_gaps(const Shape& part, double reach, const Shape& b, const Placement<
     add_from_outside(over_nearest(part, seen, nearest_at(p), b, at_a, at_b), p, b, at_b, gaps);
 }
 
+template Gap<double> part_over_end(const Shape&, const Shape&, const Placement<double>&,
+                                   const Placement<double>&);
+template Gap<Dual> part_over_end(const Shape&, const Shape&, const Placement<Dual>&,
+                                 const Placement<Dual>&);
+template Gap<Fine> part_over_end(const Shape&, const Shape&, const Placement<Fine>&,
+                                 const Placement<Fine>&);
 template Gap<double> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
                               const Placement<double>&, const Placement<double>&);
 template Gap<Dual> part_gap(const Shape&, double, const FeaturePair&, const Shape&,

@@ -9,10 +9,10 @@ namespace polhode::contact {
 /// that share would return what an impact has left in the spring.
 NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, double dt) {
   NormalLaw::WithSlope f = data.normal.quotient_and_slope(gap_n, gap_n1);
-  const double quotient = f.value, weight = data.pair.weight, share = data.end_share;
+  const double quotient = f.value, share = data.end_share;
   const bool spring = data.normal.is_spring();
   const auto add_share = [&](bool now) {
-    if (!now || !(share > 0.0 && weight > 0.0)) return;
+    if (!now || !(share > 0.0)) return;
     const NormalLaw::WithSlope end = data.normal.force_and_slope(gap_n1);
     f = {(1.0 - share) * f.value + share * end.value, (1.0 - share) * f.slope + share * end.slope};
   };
@@ -23,7 +23,7 @@ NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, dou
     f.value *= factor;
   }
   add_share(!spring);
-  return {weight * f.value, -weight * f.slope, weight * quotient};
+  return {f.value, -f.slope, quotient};
 }
 
 }  // namespace polhode::contact

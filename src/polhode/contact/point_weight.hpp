@@ -5,8 +5,8 @@
 
 namespace polhode::contact {
 
-/// Active part of a point's potential at the present placements: the weight of the feature pair,
-/// reduced where its distance has no unique direction.
+/// Active part of a point's potential at the present placements, less than 1 where its distance
+/// has no unique direction.
 [[nodiscard]] double weight_at(const PointData& data, const Placement<double>& at_a,
                                const Placement<double>& at_b);
 

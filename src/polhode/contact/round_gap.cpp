@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/mouth_rim.hpp>
 #include <polhode/contact/round_solids/cylinder.hpp>
 #include <polhode/contact/round_solids/round_shape.hpp>
 #include <polhode/contact/separation.hpp>
@@ -189,12 +190,16 @@ Shape convex(const Shape& s) {
   return own;
 }
 
-/// Gap of two convex shapes that stand for a and b.
-/// @param start  Approximate direction from b to a.
+/// Flattens the ends of a shape for contact with a strictly convex one.
+void flatten(Shape& s) {
+  if (s.round_solid->with_flat_ends) s.round_solid = s.round_solid->with_flat_ends;
+}
+
+/// The gap g of two convex shapes that stand for a and b, where hulls stand for tubes; elsewhere
+/// that of the tube's outer side.
 template <class T>
-Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, const Shape& b,
-                  const Placement<T>& at_a, const Placement<T>& at_b, const Vec3& start) {
-  const Gap<T> g = smooth_gap(convex_a, convex_b, at_a, at_b, start);
+Gap<T> gap_or_open(const Gap<T>& g, const Shape& convex_a, const Shape& a, const Shape& convex_b,
+                   const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b) {
   const Vec3 half = 0.5 * value(g.distance) * value(g.normal), middle = value(g.point);
   const auto stands = [&](const Shape& s, const Placement<T>& at, const Vec3& nearest) {
     return !is_tube(s) || hull_stands_for(s, s.axes.transpose() * (at.to_body(nearest) - s.centre),
@@ -212,12 +217,25 @@ Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, 
   return open;
 }
 
+/// Gap of two convex shapes that stand for a and b.
+/// @param start  Approximate direction from b to a.
+template <class T>
+Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, const Shape& b,
+                  const Placement<T>& at_a, const Placement<T>& at_b, const Vec3& start) {
+  return gap_or_open(smooth_gap(convex_a, convex_b, at_a, at_b, start), convex_a, a, convex_b, b,
+                     at_a, at_b);
+}
+
 }  // namespace
 
 template <class T>
 Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
                         const Placement<T>& at_b) {
-  return convex_gap(convex(a), a, convex(b), b, at_a, at_b,
+  Shape on_a = convex(a), on_b = convex(b);
+  // The end of one is flat to an ellipsoid, which is strictly convex.
+  if (b.flat_ends.empty()) flatten(on_a);
+  if (a.flat_ends.empty()) flatten(on_b);
+  return convex_gap(on_a, a, on_b, b, at_a, at_b,
                     value(at_a.point(a.centre)) - value(at_b.point(b.centre)));
 }
 
@@ -226,7 +244,7 @@ Gap<T> end_over_round(const Shape& a, int which, const Shape& b, const Placement
                       const Placement<T>& at_b) {
   const Shape disc = end_disc(a, which);
   Shape other = convex(b);
-  other.round_solid = &flat_cylinder();
+  flatten(other);
   return convex_gap(disc, a, other, b, at_a, at_b,
                     value(at_a.point(disc.centre)) - value(at_b.point(other.centre)));
 }
@@ -234,13 +252,17 @@ Gap<T> end_over_round(const Shape& a, int which, const Shape& b, const Placement
 template <class T>
 Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement<T>& at_a,
                        const Placement<T>& at_b) {
-  const Shape slender = needle(b, edge);
+  const Shape slender = needle(b, edge), own = convex(a);
+  if (is_rim_arc(b, edge)) {
+    Gap<T> g = arc_over_solid(b, edge, own, at_b, at_a);
+    g.normal = -g.normal;
+    return gap_or_open(g, own, a, slender, slender, at_a, at_b);
+  }
   // As if a were a ball: the nearest point of the needle is that of the edge.
   const Vec3 X = at_b.to_body(value(at_a.point(a.centre))) - slender.centre,
              v = slender.axes.col(2);
   const double half = slender.half.z(), along = std::clamp(v.dot(X), -half, half);
-  return convex_gap(convex(a), a, slender, slender, at_a, at_b,
-                    value(at_b.vector(Vec3(X - along * v))));
+  return convex_gap(own, a, slender, slender, at_a, at_b, value(at_b.vector(Vec3(X - along * v))));
 }
 
 template V3<double> extreme_point(const Shape&, int, const V3<double>&, const Placement<double>&);

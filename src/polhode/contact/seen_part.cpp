@@ -8,6 +8,7 @@
 
 #include <polhode/contact/seen_part.hpp>
 #include <polhode/geometry/nearest.hpp>
+#include <polhode/math/sign_change.hpp>
 
 namespace polhode::contact {
 
@@ -131,7 +132,7 @@ void SeenPart::edge(const Shape& b, int index, Nearest& best) const {
   // The distance from a convex part is convex along the edge: its slope changes sign once.
   const auto refine = [&](double low, double high) {
     double d_low = 0.0, d_high = 0.0;
-    double s_low = at(low, d_low), s_high = at(high, d_high);
+    const double s_low = at(low, d_low), s_high = at(high, d_high);
     const auto take = [&](double t, double distance) {
       if (!(distance < best.distance)) return;
       if (t == 0.0 || t == 1.0)
@@ -141,22 +142,9 @@ void SeenPart::edge(const Shape& b, int index, Nearest& best) const {
     };
     if (s_low >= 0.0) return take(low, d_low);
     if (s_high <= 0.0) return take(high, d_high);
-    double t = 0.5 * (low + high), distance = 0.0;
-    const double enough = 1e-13 * v.norm();
-    for (int k = 0, side = 0; k < 100 && high - low > 1e-15; ++k) {  // Illinois
-      t = k % 8 == 7 ? 0.5 * (low + high) : (low * s_high - high * s_low) / (s_high - s_low);
-      const double s = at(t, distance);
-      if (std::abs(s) < enough) break;
-      if (s < 0.0) {
-        low = t, s_low = s;
-        if (side == -1) s_high *= 0.5;
-        side = -1;
-      } else {
-        high = t, s_high = s;
-        if (side == 1) s_low *= 0.5;
-        side = 1;
-      }
-    }
+    double distance = 0.0;
+    const auto slope = [&](double t) { return at(t, distance); };
+    const double t = sign_change(slope, low, high, s_low, s_high, 1e-13 * v.norm());
     take(t, distance);
   };
   if (ring_) return around_minima(X, V, middle, at, refine);

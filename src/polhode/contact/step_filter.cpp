@@ -47,11 +47,14 @@ bool is_of_revolution(const Shape& s, const FeaturePair& f, bool side_a) {
     case GapKind::part_solid:
     case GapKind::round_round:
     case GapKind::end_round:
+    case GapKind::part_end:
+    case GapKind::rim_bar:
       return true;
     case GapKind::extreme_plane:
     case GapKind::part_triangle:
     case GapKind::part_surface:
     case GapKind::round_edge:
+    case GapKind::rim_edge:
       return side_a;
     case GapKind::point_solid:
       return !side_a;
@@ -216,7 +219,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
       continue;
     }
     const Point& p = points_[i];
-    if (p.sensor || p.data.pair.weight < 0.0 || !std::isfinite(p.least_gap)) continue;
+    if (p.sensor || !std::isfinite(p.least_gap)) continue;
     const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
     const Vec3 relative = x_a.head<3>() - x_b.head<3>();
     const Shape &A = *p.data.a, &B = *p.data.b;
@@ -289,7 +292,9 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   // On a straight path a concave side may be approached faster than along the present normal.
   const GapKind kind = p.data.pair.kind;
   const bool in_tube =
-      (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
+      ((kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b)) ||
+      kind == GapKind::part_end || is_of_rim(kind) ||
+      (kind == GapKind::round_edge && is_tube(*p.data.b));
   const bool ring = has_part(kind) && is_tube(*p.data.a);
   const Shape rim = ring ? part_of(*p.data.a, p.data.pair.i) : Shape{};
   std::array<Vec3, 2> ends;
@@ -392,9 +397,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
         }
         return enters <= leaves;
       },
-      [&](int t) {
-        if (!is_tube(B) || is_end_face(B, t)) near.push_back(t);
-      });
+      [&](int t) { near.push_back(t); });
   const auto speed = [&](const Vec3& n, const Mat3& L_a, double left, bool in_front) {
     double v = in_front ? std::max(0.0, -n.dot(relative)) : relative.norm();
     if (corner) {
@@ -407,7 +410,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
   };
   for (const int t : near) {
     const FeaturePair alone{corner ? GapKind::point_triangle : GapKind::part_triangle,
-                            p.data.pair.i, t, 1.0, Fade::none};
+                            p.data.pair.i, t, Fade::none};
     const Shape::Plane& plane = B.planes[t];
     const double side = plane.normal.dot(start.y) < plane.offset ? -1.0 : 1.0;
     const auto over_plane_of_it = [&](const Where& w) {

@@ -7,8 +7,7 @@
 
 namespace polhode::contact {
 
-/// A hollow round bar along z of the placement, with exact round sides and outer rims. Its ends and
-/// inner rims are a polygon's.
+/// A hollow round bar along z of the placement, with exact round sides and rims.
 ///
 /// @param outer, inner  Diameters [m].
 /// @param polygon  Closed polyhedral approximation; the corners of its rims lie on their circles.
@@ -37,16 +36,6 @@ namespace polhode::contact {
 /// Whether an edge of it is one of the inner side or its rims.
 [[nodiscard]] inline bool is_inner_edge(const Shape& tube, int edge) {
   return on_inner_side(tube, tube.edges[edge].i) && on_inner_side(tube, tube.edges[edge].j);
-}
-/// Whether an edge of it runs across an end, between both sides.
-[[nodiscard]] inline bool is_across_end(const Shape& tube, int edge) {
-  return on_inner_side(tube, tube.edges[edge].i) != on_inner_side(tube, tube.edges[edge].j);
-}
-/// Whether a triangle of it belongs to an end; round sides replace the others.
-[[nodiscard]] inline bool is_end_face(const Shape& tube, int triangle) {
-  const auto& c = tube.triangles[triangle];
-  const bool inner = on_inner_side(tube, c[0]);
-  return on_inner_side(tube, c[1]) != inner || on_inner_side(tube, c[2]) != inner;
 }
 
 /// Gap of a ball of radius rho around the point x against a tube with round faces.

@@ -12,21 +12,32 @@ namespace polhode::contact {
 
 namespace {
 
-/// Smooth maximum of the supports of the apex and of the base, a flat ellipsoid.
+/// Half thickness of the rim seen from above, as a part of the radius.
+constexpr double kThin = 1e-9;
+
+/// Smooth maximum of the supports of the apex and of the base, a disc whose rim lies on the flank
+/// and which bulges down to the end.
 struct ApexAndBase {
-  Vec3 base;        ///< Semi-axes [m].
-  double apex;      ///< Distance from the centre to the apex, and also to the base [m].
+  double R, H;      ///< Radius at the end and half length [m].
+  double bulge;     ///< [m]
+  double radius;    ///< Of the disc [m].
+  double height;    ///< Of the disc, along the axis from the centre [m].
   double softness;  ///< Where apex and base are equally far [m].
 
-  explicit ApexAndBase(const Shape& s) {
-    const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding, e = blur::coarse;
-    base = {R, R, e * R};
-    apex = H - e * R;
-    softness = e * R;
+  ApexAndBase(const Shape& s, double blur, double end) : R(s.half[0]), H(s.half[2]) {
+    bulge = end * std::min(R, H);
+    radius = R * (1.0 - bulge / (2.0 * H));
+    height = bulge - H;
+    softness = blur * R;
+  }
+  /// Semi-axes of the disc as seen along a direction with this component along the axis.
+  [[nodiscard]] Vec3 disc(double along) const {
+    return {radius, radius, along < 0.0 ? bulge : kThin * R};
   }
 };
 
 /// Functions of RoundSolid.
+template <bool flat>
 struct Cone {
   static Shape shape(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
                      double rounding) {
@@ -61,30 +72,49 @@ struct Cone {
 
   /// @eq{contact-round-support}
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double /*blur*/) {
-    const ApexAndBase parts(s);
-    const V3<T> apex = parts.apex * axes[2], base = of_ellipsoid(parts.base, axes, n) - apex,
+  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
+    const ApexAndBase parts(s, blur, end(blur));
+    const V3<T> apex = parts.H * axes[2],
+                base = parts.height * axes[2] +
+                       of_ellipsoid(parts.disc(value(dot(axes[2], n))), axes, n),
                 d = apex - base;
     const double soft = parts.softness * parts.softness;
     const T more = dot(d, n), root = sqrt(more * more + soft);
-    return 0.5 * (apex + base + (more / root) * d + (soft / root) * n);
+    return 0.5 * (apex + base + (more / root) * d + (soft / root) * n) + s.rounding * n;
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double /*blur*/) {
-    const ApexAndBase parts(s);
-    CurvedSupport c = curved_ellipsoid(parts.base, n);
-    const Vec3 apex = parts.apex * Vec3::UnitZ(), base = c.x - apex, d = apex - base;
+  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
+    const ApexAndBase parts(s, blur, end(blur));
+    CurvedSupport c = curved_ellipsoid(parts.disc(n.z()), n);
+    const Vec3 apex = parts.H * Vec3::UnitZ(), base = c.x + parts.height * Vec3::UnitZ(),
+               d = apex - base;
     const double more = d.dot(n), soft = parts.softness * parts.softness;
     const double root = std::sqrt(more * more + soft);
-    c.x = 0.5 * (apex + base + (more / root) * d + (soft / root) * n);
+    c.x = 0.5 * (apex + base + (more / root) * d + (soft / root) * n) + s.rounding * n;
     c.D = 0.5 * ((1.0 - more / root) * c.D + (soft / root) * Mat3::Identity() +
-                 (soft / (root * root * root)) * (d - more * n) * d.transpose());
+                 (soft / (root * root * root)) * (d - more * n) * d.transpose()) +
+          s.rounding * (Mat3::Identity() - n * n.transpose());
     return c;
   }
 
-  static Vec3 sharpened(const Shape& /*s*/, const Vec3& n, double /*from*/, double /*to*/) {
-    return n;
+  /// The point on the flank depends on the ratio of the components along and across it, over the
+  /// blur, and that on a flat end on that of those across and along the axis, over the bulge.
+  static Vec3 sharpened(const Shape& s, const Vec3& n, double from, double to) {
+    const double R = s.half[0], length = 2.0 * s.half[2], slant = std::hypot(R, length);
+    const double q = std::hypot(n.x(), n.y());
+    const double across = (q * length + n.z() * R) / slant,
+                 along = (n.z() * length - q * R) / slant;
+    if (q > 0.0 && slant * std::abs(along) <= kFar * from * R * across) {
+      const double less = to / from * along, part = (across * length - less * R) / (slant * q);
+      return {part * n.x(), part * n.y(), (across * R + less * length) / slant};
+    }
+    if (!flat || n.z() > 0.0 || q > kFar * end(from) * -n.z()) return n;
+    const double part = end(to) / end(from);
+    return {part * n.x(), part * n.y(), n.z()};
   }
+
+ private:
+  static double end(double blur) { return bulge_of_end(flat, blur); }
 };
 
 }  // namespace
@@ -114,7 +144,8 @@ Shape cone(std::string_view where, double diameter, double length, const ShapePl
 }
 
 const RoundSolid& cone_solid() {
-  static constexpr RoundSolid solid = record_of<Cone>("cone");
+  static constexpr RoundSolid with_flat_end = record_of<Cone<true>>("cone");
+  static constexpr RoundSolid solid = record_of<Cone<false>>("cone", &with_flat_end);
   return solid;
 }
 

@@ -12,12 +12,6 @@ namespace polhode::contact {
 
 namespace {
 
-/// Ratio over the blur beyond which that point is near an end.
-constexpr double kFar = 30.0;
-
-/// Half thickness of the disc, as a part of its radius. An edge may lie on an end, which is rounded
-/// therefore. It is flat to the disc of another one, which is strictly convex.
-constexpr double kRoundedEnd = 1e-2, kFlatEnd = 1e-5;
 /// Smallest semi-axis of the disc, as a part of the radius.
 constexpr double kThinnest = 1e-9;
 
@@ -82,7 +76,8 @@ struct Cylinder {
   }
 
  private:
-  static double end(double blur) { return flat ? std::max(kFlatEnd, blur) : kRoundedEnd; }
+  /// Half thickness of the disc, as a part of its radius.
+  static double end(double blur) { return bulge_of_end(flat, blur); }
 };
 
 }  // namespace
@@ -102,12 +97,8 @@ Shape cylinder(std::string_view where, double diameter, double length, const Sha
 }
 
 const RoundSolid& cylinder_solid() {
-  static constexpr RoundSolid solid = record_of<Cylinder<false>>("cylinder");
-  return solid;
-}
-
-const RoundSolid& flat_cylinder() {
-  static constexpr RoundSolid solid = record_of<Cylinder<true>>("cylinder");
+  static constexpr RoundSolid with_flat_ends = record_of<Cylinder<true>>("cylinder");
+  static constexpr RoundSolid solid = record_of<Cylinder<false>>("cylinder", &with_flat_ends);
   return solid;
 }
 

@@ -11,7 +11,4 @@ namespace polhode::contact {
                              const ShapePlace& place = {});
 [[nodiscard]] const RoundSolid& cylinder_solid();
 
-/// A cylinder with flat ends to the end of another shape; no kind of shape.
-[[nodiscard]] const RoundSolid& flat_cylinder();
-
 }  // namespace polhode::contact

@@ -2,6 +2,8 @@
 // Parts of which the kinds of round solids are made.
 #pragma once
 
+#include <algorithm>
+
 #include <polhode/contact/round_solids/round_solid.hpp>
 
 namespace polhode::contact {
@@ -13,6 +15,17 @@ namespace polhode::contact {
 /// Adds a flat end, the points of its rim, and those that support it when it stands on a face:
 /// slightly inside, so that a tilted rim rolls on its disc.
 void add_flat_end(Shape& s, double height, double radius);
+
+/// Ratio of two components of a direction, over the blur, beyond which the support point of a
+/// straight side is near its end.
+inline constexpr double kFar = 30.0;
+
+/// Bulge of an end, as a part of its radius. An edge may lie on an end, which is rounded therefore;
+/// it is flat to the disc of another solid, which is strictly convex.
+[[nodiscard]] inline double bulge_of_end(bool flat, double blur) {
+  constexpr double kRounded = 1e-2, kFlat = 1e-5;
+  return flat ? std::max(kFlat, blur) : kRounded;
+}
 
 /// x = centre + Σ B²n/|Bn|, the support point of a sum of ellipsoids with semi-axes B along `axes`.
 /// @eq{contact-round-support}

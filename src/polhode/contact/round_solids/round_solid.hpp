@@ -18,7 +18,7 @@ struct CurvedSupport {
 /// Smoothing of support functions, as a part of a solid's size: straight sides bulge, sharp rims
 /// are rounded, and slender and flat ellipsoids are thickened by it.
 namespace blur {
-inline constexpr double coarse = 1e-2;  ///< From which a search starts; a cone keeps it.
+inline constexpr double coarse = 1e-2;  ///< From which a search starts.
 inline constexpr double fine = 1e-6;
 }  // namespace blur
 
@@ -50,6 +50,9 @@ struct RoundSolid {
   RoundFormulas<double> plain;
   RoundFormulas<Dual> dual;
   RoundFormulas<Fine> fine;
+  /// The same kind with flatter ends, for strictly convex discs that touch them; null if it has no
+  /// ends.
+  const RoundSolid* with_flat_ends = nullptr;
 
   template <class T>
   [[nodiscard]] const RoundFormulas<T>& formulas() const {
@@ -64,14 +67,15 @@ struct RoundSolid {
 
 /// Record of a class of static functions with the names of those of RoundSolid and RoundFormulas.
 template <class Kind>
-constexpr RoundSolid record_of(std::string_view name) {
+constexpr RoundSolid record_of(std::string_view name, const RoundSolid* with_flat_ends = nullptr) {
   return {name,
           Kind::shape,
           Kind::curved_support,
           Kind::sharpened,
           {Kind::template over<double>, Kind::template support<double>},
           {Kind::template over<Dual>, Kind::template support<Dual>},
-          {Kind::template over<Fine>, Kind::template support<Fine>}};
+          {Kind::template over<Fine>, Kind::template support<Fine>},
+          with_flat_ends};
 }
 
 /// Every kind of round solid.

@@ -18,7 +18,7 @@ namespace {
 // Layout: magic (16 bytes with the format version), fingerprint (64), length of the state (8,
 // little endian), state, SHA-256 of all that (64).
 constexpr std::string_view kMagicStem = "polhode state ";
-constexpr std::string_view kMagic = "polhode state 5\n";
+constexpr std::string_view kMagic = "polhode state 6\n";
 constexpr std::size_t kDigest = 64;
 
 }  // namespace
