@@ -141,7 +141,7 @@ TEST(MouthRim, IsSmoothToABallOnTheAxis) {
     return gap({GapKind::point_solid, 0, 0, Fade::none}, ball, tube, Placement<double>(x, still, 0),
                at_tube);
   };
-  const double near = 0.05 * r * h / (h + r);  // where smoothing begins
+  const double near = 0.05 * r * h / (h + r);  // largest smoothed distance from the axis
   for (const double side : {-1.0, 1.0})
     for (const double q :
          {0.0, 1e-9, 1e-6, 0.1 * near, 0.5 * near, 0.99 * near, 1.01 * near, 2.0 * near, 0.5 * r}) {

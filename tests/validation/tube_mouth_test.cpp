@@ -41,7 +41,7 @@ double height_of_ball(double R) {
   return std::sqrt((R + kRounding) * (R + kRounding) - across * across) - kRounding;
 }
 
-/// Likewise of an ellipsoid of revolution, from the least distance to its meridian.
+/// Height of the centre of an ellipsoid of revolution, from the minimum distance to its meridian.
 double height_of_egg(double a, double c) {
   double low = 0.0, high = c;
   for (int k = 0; k < 60; ++k) {
@@ -60,7 +60,7 @@ double height_of_egg(double a, double c) {
   return 0.5 * (low + high);
 }
 
-/// Likewise of the centroid of a cone with its apex below, whose flank is a cone too.
+/// Height of the centroid of a cone with its apex below, from the distance to its flank.
 double height_of_cone(double R, double length) {
   const double slant = std::hypot(R, length), s = R / slant, c = length / slant;
   return (kRounding - (kMouth + kRounding) * c) / s - kRounding + 0.75 * length;
@@ -73,7 +73,7 @@ TEST(TubeMouth, HoldsBodiesAtTheHeightOfTheClosedForm) {
     std::string body;
     double height;
   };
-  const double chord = 5e-3;  // of a pen or a lid that lies on the end
+  const double chord = 5e-3;  // height of a pen or lid on the end
   const Resting all[] = {
       {"shape: {sphere: 0.06}, inertia: [3.6e-4, 3.6e-4, 3.6e-4], position: [0, 0, 0.0225]",
        height_of_ball(0.03)},

@@ -52,7 +52,7 @@ for (const [name, options] of [["wide and light", {}], ["dark", { colorScheme: "
       await slide(page, "Position of the section", 0.1);
       for (const key of ["1", "o", "f", "h", "i", "a", "t", "m", "b", "d"]) await page.keyboard.press(key);
       await page.waitForTimeout(200);
-      expect(!await page.locator(".measure").isVisible(), "points are asked for that cannot be clicked");
+      expect(!await page.locator(".measure").isVisible(), "the ruler is visible without a picture");
       expect(faults.length === 0, faults.join(" | "));
       await shot(page, `blank_${name.replaceAll(" ", "_")}`);
     } finally { await other.close(); }

@@ -47,7 +47,8 @@ template <class T>
   if (in_0 && in_1 && pair.fade == Fade::flank)
     return (1.0 / square) *
            (((y_0 + y_1 - (pair.aligned + pair.opposed)) * (at_0.z + at_1.z)) * (2.0 - x_0 - x_1));
-  const double slope = (pair.fade == Fade::parallel ? -1.0 : 1.0) / square;  // of x, by −y²
+  // Derivative of x by y², with the sign of m in the weight.
+  const double slope = (pair.fade == Fade::parallel ? -1.0 : 1.0) / square;
   if (pair.fade_from > 0.0) {
     if (x_0 <= 0.0 && value(x_1) <= 0.0) return T(0.0);
     if (in_0 && in_1 && x_0 > 0.0 && value(x_1) > 0.0)

@@ -58,7 +58,8 @@ struct FeaturePair {
   int i = 0, j = 0;
   Fade fade = Fade::none;
   double fade_square = 1e-3;  ///< Square of the sine of the angle below which it fades.
-  double fade_from = 0.0;     ///< Of that at which it has vanished; fade_square is added to this.
+  /// Square of the sine up to which the weight m is zero; x is then measured from it.
+  double fade_from = 0.0;
   /// Cosines of the angle between the directions at which flanks are parallel.
   double aligned = 1.0, opposed = -1.0;
 };

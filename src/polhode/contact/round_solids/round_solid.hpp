@@ -50,8 +50,8 @@ struct RoundSolid {
   RoundFormulas<double> plain;
   RoundFormulas<Dual> dual;
   RoundFormulas<Fine> fine;
-  /// The same kind with flatter ends, for strictly convex discs that touch them; null if it has no
-  /// ends.
+  /// Record of the same kind with flatter ends, for contact with strictly convex shapes; null if it
+  /// has no ends.
   const RoundSolid* with_flat_ends = nullptr;
 
   template <class T>
