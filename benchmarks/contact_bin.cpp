@@ -44,13 +44,13 @@ void fill(System& system, contact::ContactSet& contacts, int n, double side) {
                x0 + 0.22 * ((i / row) % row) + 0.005 * std::sin(78.233 * i),
                0.12 + 0.22 * (i / (row * row)) + 0.005 * std::sin(37.719 * i)};
     contacts.add_shape(
-        {system.add_body(body, start), body.name, contact::sphere(body.name, 2.0 * kRadius)});
+        {system.add_body(body, start), body.name, geometry::sphere(body.name, 2.0 * kRadius)});
   }
   const auto wall = [&](const char* name, const Vec3& normal, double distance) {
-    contact::ShapePlace place;
+    geometry::ShapePlace place;
     place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
     place.origin = -distance * normal;
-    contacts.add_shape({kGround, name, contact::plane(place)});
+    contacts.add_shape({kGround, name, geometry::plane(place)});
   };
   wall("floor", Vec3::UnitZ(), 0.0);
   wall("west", Vec3::UnitX(), 0.5 * side);

@@ -22,8 +22,8 @@ int main() {
       centre[i] = side * Vec3(number(), number(), number());
       half[i] = 0.1 * std::pow(ratio, number());
     }
-    contact::BroadPhase broad;
-    std::vector<contact::Bounds> boxes(n);
+    geometry::BroadPhase broad;
+    std::vector<geometry::Bounds> boxes(n);
     std::vector<std::pair<int, int>> pairs;
     double best = 1e9;
     for (int repeat = 0; repeat < 8; ++repeat) {

@@ -45,7 +45,7 @@ void measure(const Task& task, int steps) {
   else
     s.add_box("crate", {0.3, 0.2, 0.2}, 1.0, start);
   s.contacts->add_shape(
-      {kGround, "ground", contact::height_field("ground", task.cells + 1, cell, z)});
+      {kGround, "ground", geometry::height_field("ground", task.cells + 1, cell, z)});
   s.law(0.3, 0.0, 1e-5);
   s.begin(kStep);
   std::vector<double> rounds;

@@ -20,23 +20,24 @@ namespace {
 /// A block of some thousand unknowns in a step, and room for what it computes.
 class Block {
  public:
-  Block(const ElementKind& kind, const std::string& isa)
-      : mesh_(
-            make_mesh("block", "block", {{"size", {1, 1, 1}}, {"cells", cells(kind)}}, kind.shape)),
+  Block(const solids::ElementKind& kind, const std::string& isa)
+      : mesh_(solids::make_mesh("block", "block", {{"size", {1, 1, 1}}, {"cells", cells(kind)}},
+                                kind.shape)),
         n_(kind.sizes().nodes) {
-    const MaterialDescription material =
+    const solids::MaterialDescription material =
         kind.sizes().mean_dilatation
-            ? MaterialDescription{.kind = "mooney_rivlin_uncoupled",
-                                  .values = {{"c1", 1e6}, {"bulk_modulus", 1e9}}}
-            : MaterialDescription{.kind = "neo_hookean",
-                                  .values = {{"youngs_modulus", 1e6}, {"poisson_ratio", 0.3}}};
-    group_ = make_solid_elements({.name = "block",
-                                  .element = kind.name,
-                                  .material = make_material("material", material),
-                                  .density = 1000.0,
-                                  .connectivity = mesh_.blocks[0].nodes,
-                                  .X = mesh_.nodes,
-                                  .isa = isa});
+            ? solids::MaterialDescription{.kind = "mooney_rivlin_uncoupled",
+                                          .values = {{"c1", 1e6}, {"bulk_modulus", 1e9}}}
+            : solids::MaterialDescription{
+                  .kind = "neo_hookean",
+                  .values = {{"youngs_modulus", 1e6}, {"poisson_ratio", 0.3}}};
+    group_ = solids::make_solid_elements({.name = "block",
+                                          .element = kind.name,
+                                          .material = solids::make_material("material", material),
+                                          .density = 1000.0,
+                                          .connectivity = mesh_.blocks[0].nodes,
+                                          .X = mesh_.nodes,
+                                          .isa = isa});
     for (const Vec3& X : mesh_.nodes)
       for (int i = 0; i < 3; ++i) {
         x_n_.push_back(X[i] * (1.0 + 0.01 * i));
@@ -69,19 +70,20 @@ class Block {
   [[nodiscard]] int size() const { return group_->size(); }
 
  private:
-  static std::vector<double> cells(const ElementKind& kind) {
+  static std::vector<double> cells(const solids::ElementKind& kind) {
     const double n = kind.sizes().points == 27 ? 4.0 : 10.0;
     return {n, n, n};
   }
 
-  Mesh mesh_;
+  solids::Mesh mesh_;
   int n_;
-  std::unique_ptr<SolidElements> group_;
+  std::unique_ptr<solids::SolidElements> group_;
   std::vector<double> x_n_, x_n1_, u_, v_, force_, history_, scratch_, tangent_;
   std::vector<int> slots_;
 };
 
-void run(benchmark::State& state, const ElementKind& kind, const std::string& isa, bool tangents) {
+void run(benchmark::State& state, const solids::ElementKind& kind, const std::string& isa,
+         bool tangents) {
   Block block(kind, isa);
   block.evaluate(true);
   for (auto _ : state) block.evaluate(tangents);
@@ -98,11 +100,11 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   for (const char* isa : {"baseline", "avx2", "avx512"}) {
     try {
-      (void)element_kernels(isa);
+      (void)solids::element_kernels(isa);
     } catch (const InputError&) {
       continue;  // not on this machine
     }
-    for (const ElementKind& kind : element_kinds())
+    for (const solids::ElementKind& kind : solids::element_kinds())
       for (const bool tangents : {false, true})
         benchmark::RegisterBenchmark(
             (kind.name + "/" + (tangents ? "tangent" : "forces") + "/" + isa).c_str(),

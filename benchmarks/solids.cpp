@@ -54,10 +54,11 @@ int add_hub(System& system, const char* name, const Vec3& at) {
 void add_block(System& system, const Block& block, const std::string& name, int hub,
                const Vec3& hub_at, int far_hub) {
   const Vec3 size = kCell * Vec3(block.x, block.y, block.z);
-  const Mesh mesh = make_mesh(name, "block",
-                              {{"size", {size[0], size[1], size[2]}},
-                               {"cells", {1.0 * block.x, 1.0 * block.y, 1.0 * block.z}}},
-                              "hex8");
+  const solids::Mesh mesh =
+      solids::make_mesh(name, "block",
+                        {{"size", {size[0], size[1], size[2]}},
+                         {"cells", {1.0 * block.x, 1.0 * block.y, 1.0 * block.z}}},
+                        "hex8");
   const double first = hub_at[0] + kHalfHub, last = first + size[0];
   std::vector<Vec3> X;
   int first_node = -1;
@@ -75,18 +76,18 @@ void add_block(System& system, const Block& block, const std::string& name, int 
   }
   for (int i = 0; i < first_node + static_cast<int>(mesh.nodes.size()); ++i)
     X.push_back(system.nodes()[i].position);
-  MaterialDescription material;
+  solids::MaterialDescription material;
   material.kind = "neo_hookean";
   material.values = {{"youngs_modulus", 1e7}, {"poisson_ratio", 0.3}};
-  SolidElementsDescription d;
+  solids::SolidElementsDescription d;
   d.name = name;
   d.element = "hex8_eas9";
-  d.material = make_material("rubber", material);
+  d.material = solids::make_material("rubber", material);
   d.density = 1100.0;
   d.connectivity = mesh.blocks[0].nodes;
   for (int& node : d.connectivity) node += first_node;
   d.X = X;
-  system.add_elements(make_solid_elements(std::move(d)));
+  system.add_elements(solids::make_solid_elements(std::move(d)));
 }
 
 void add_joint(System& system, const char* name, const char* type, int body, const Vec3& in_world,

@@ -4,7 +4,8 @@
     tools/check_layers.py                checks
     tools/check_layers.py --picture FILE draws the layers and their includes, as SVG
 
-Also checks that there are no dynamic casts and that the interface of interactions stays small (docs/decisions/0008).
+Also checks that namespaces follow folders (docs/decisions/0009), that there are no dynamic casts and that the interface
+of interactions stays small (docs/decisions/0008).
 """
 # From the bottom up; folders of one layer do not include each other.
 LAYERS = [
@@ -40,6 +41,13 @@ VIRTUAL = re.compile(r"\bvirtual [^~\n]*\(")
 # Facets of a group of elements, and the functions that return them.
 FACETS = {"BarrierConstraint": "barrier_constraint", "InternalUnknowns": "internal_unknowns",
           "ChangingSparsity": "changing_sparsity", "SurfaceImpacts": "surface_impacts"}
+# Namespaces of folders; all others have polhode.
+NAMESPACES = {"geometry": "geometry", "solids": "solids", "linear": "linear", "contact": "contact",
+              "contact_laws": "contact", "surface_contact": "surface_contact", "io": "io"}
+# Numbers with derivatives by the motion of two bodies in contact, in folders below contact.
+OF_CONTACT = {"math/dual.hpp", "dynamics/placement.hpp"}
+NAMESPACE = re.compile(r"^namespace (polhode(?:::\w+)*) \{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
+DECLARATION = re.compile(r"(?:(?:template.*|class|struct|enum class) .*;\s*)*")
 HEADERS_OF_OTHERS = re.compile(r'\s*#\s*include\s*"')
 
 
@@ -47,6 +55,18 @@ def layer(folder):
     """Name in LAYERS of a folder: itself, or its parent folder."""
     parts = folder.split("/")
     return next((name for n in (2, 1) if (name := "/".join(parts[:n])) in RANK), None)
+
+
+def wrong_namespace(path, text):
+    """First namespace that is not that of the file's folder and has more than declarations, or None; the folder's."""
+    place = path.relative_to(SOURCE)
+    inner = "contact" if place.as_posix() in OF_CONTACT else NAMESPACES.get(place.parts[0])
+    expected = f"polhode::{inner}" if inner else "polhode"
+    for name, body in NAMESPACE.findall(text):
+        follows = name.split("::")[1:2] == [inner] if inner else name.split("::")[1:2] not in [[n] for n in NAMESPACES.values()]
+        if not follows and not DECLARATION.fullmatch(body.strip()):
+            return name, expected
+    return None, expected
 
 
 def survey():
@@ -64,6 +84,9 @@ def survey():
             problems.append(f"{place}: its folder is not in LAYERS of tools/check_layers.py.")
             continue
         text = path.read_text()
+        wrong, expected = wrong_namespace(path, text)
+        if wrong:
+            problems.append(f"{place}: is in namespace {wrong}, but its folder has {expected}.")
         problems += [f"{place}: is {facet}, but does not override {asked}()." for facet, asked in FACETS.items()
                      if re.search(rf"public {facet}\b", text) and f"{asked}() const override" not in text]
         for number, line in enumerate(text.splitlines(), 1):

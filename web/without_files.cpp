@@ -13,8 +13,10 @@ constexpr const char* kInCode = "Describe the shape in the model itself";
 
 }  // namespace
 
-TriangleSurface read_surface(const std::string& path) { throw InputError(path, kNoFiles, kInCode); }
-Mesh read_mesh(const std::string& path, double /*scale*/) {
+geometry::TriangleSurface geometry::read_surface(const std::string& path) {
+  throw InputError(path, kNoFiles, kInCode);
+}
+solids::Mesh solids::read_mesh(const std::string& path, double /*scale*/) {
   throw InputError(path, kNoFiles, kInCode);
 }
 

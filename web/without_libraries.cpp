@@ -4,7 +4,7 @@
 #include <polhode/linear/mumps.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 std::unique_ptr<LinearSolver> make_klu_solver() {
   throw InputError("linear_solver", "'klu' is missing in a web page",
@@ -30,4 +30,4 @@ double Mumps::factor_entries() const { return 0.0; }
 void Mumps::find_null_pivots(bool) {}
 std::vector<int> Mumps::null_pivots() const { return {}; }
 
-}  // namespace polhode
+}  // namespace polhode::linear

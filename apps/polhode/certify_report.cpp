@@ -93,7 +93,7 @@ void write_table(const std::string& path, const CertifiedQuantity& q) {
       header.push_back(format("{}{} [{}]", column, what, q.unit));
   header.push_back(format("error bar [{}]", q.unit));
   header.emplace_back("order [-]");
-  CsvTable table(path, header);
+  io::CsvTable table(path, header);
   for (std::size_t i = 0; i < q.series.t.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     std::vector<double> cells{q.series.t[i]};
@@ -166,10 +166,10 @@ Json certificate_json(const Certificate& c, int code, const std::string& folder)
 }
 
 void write_files(const Certificate& c, const std::string& folder, const Json& json) {
-  make_folder(folder);
-  write_file_atomically(folder + "/certificate.svg", certificate_svg(c));
-  write_file_atomically(folder + "/certificate.json", json.dump(2) + "\n");
-  make_folder(folder + "/certificate");
+  io::make_folder(folder);
+  io::write_file_atomically(folder + "/certificate.svg", certificate_svg(c));
+  io::write_file_atomically(folder + "/certificate.json", json.dump(2) + "\n");
+  io::make_folder(folder + "/certificate");
   for (const CertifiedQuantity& q : c.quantities)
     write_table(folder + "/certificate/" + table_name(q), q);
 }

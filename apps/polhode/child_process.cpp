@@ -53,7 +53,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::str
   posix_spawnattr_destroy(&how);
   if (fault != 0) {
     id_ = -1;
-    throw FileError(words[0], "cannot be started", "Name another program");
+    throw io::FileError(words[0], "cannot be started", "Name another program");
   }
 }
 

@@ -17,15 +17,15 @@
 namespace polhode::cli {
 
 Model load_model(const ModelArguments& arguments) {
-  (void)read_file(arguments.file);  // A missing file is an error of input, not of the model.
-  return read_model(arguments.file, arguments.overrides);
+  (void)io::read_file(arguments.file);  // A missing file is an error of input, not of the model.
+  return io::read_model(arguments.file, arguments.overrides);
 }
 
 void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
 void print(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw FileError::from_errno("stdout", "cannot be written");
+    throw io::FileError::from_errno("stdout", "cannot be written");
 }
 
 namespace {

@@ -69,9 +69,9 @@ class Receiver {
     if (name == "failed" || name == "done") {
       done = true;
     } else if (name == "film.gif") {
-      write_file_atomically(output_, request.body, false);
+      io::write_file_atomically(output_, request.body, false);
     } else {
-      write_file_atomically(folder_ + "/" + name, request.body, false);
+      io::write_file_atomically(folder_ + "/" + name, request.body, false);
       ++pictures;
     }
     return {200, "text/plain", "taken\n"};
@@ -114,10 +114,10 @@ void encode(const std::string& ffmpeg, const std::string& folder, double rate,
        output},
       log);
   if (child.wait() == 0) return;
-  std::string said = read_file(log);
+  std::string said = io::read_file(log);
   while (!said.empty() && std::isspace(static_cast<unsigned char>(said.back())) != 0)
     said.pop_back();
-  throw FileError(output, "cannot be written by ffmpeg: " + said, "Name a .gif file");
+  throw io::FileError(output, "cannot be written by ffmpeg: " + said, "Name a .gif file");
 }
 
 /// Thread that sets `stop` when a condition is true; it ends with this object.
@@ -151,11 +151,11 @@ void write_film(const FilmRequest& request) {
                      "Install the Debian package ffmpeg, or write a .gif file");
   const fs::path place = fs::path(request.output).parent_path();
   if (!ending.empty() && !place.empty() && !fs::is_directory(place))
-    throw FileError(request.output, "cannot be written: its folder does not exist",
-                    "Make the folder first");
+    throw io::FileError(request.output, "cannot be written: its folder does not exist",
+                        "Make the folder first");
   const TemporaryFolder folder;
   const bool pictures = ending.empty();
-  if (pictures) make_folder(request.output);
+  if (pictures) io::make_folder(request.output);
   Receiver receiver(request, ending == ".gif" ? "gif" : "png",
                     pictures ? request.output : folder.path());
   const LoopbackServer server(0);
@@ -179,7 +179,8 @@ void write_film(const FilmRequest& request) {
     throw InputError(kWhere, "the page says: " + receiver.error(),
                      "Correct the options of the film");
   if (!receiver.done)
-    throw FileError(browser, "ended before the film was drawn", "Name another one with CHROMIUM");
+    throw io::FileError(browser, "ended before the film was drawn",
+                        "Name another one with CHROMIUM");
   if (ending == ".mp4") encode(ffmpeg, folder.path(), request.rate, request.output);
 }
 

@@ -111,8 +111,8 @@ LoopbackServer::LoopbackServer(int port) {
       ::listen(socket_, 16) != 0 ||
       ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length) != 0) {
     ::close(socket_);
-    throw FileError(format("127.0.0.1:{}", port), "cannot be served",
-                    "Leave --port out, or name another one");
+    throw io::FileError(format("127.0.0.1:{}", port), "cannot be served",
+                        "Leave --port out, or name another one");
   }
   port_ = ntohs(address.sin_port);
 }

@@ -86,13 +86,13 @@ int main(int argc, char** argv) {
   using namespace polhode;
   try {
     return cli::main_program(argc, argv);
-  } catch (const ModelErrors& errors) {
+  } catch (const io::ModelErrors& errors) {
     cli::say(errors.text());
     return cli::kModelInvalid;
   } catch (const InputError& error) {
     cli::say(error.what());
     return cli::kModelInvalid;
-  } catch (const FileError& error) {
+  } catch (const io::FileError& error) {
     cli::say(error.what());
     return cli::kInputOutput;
   } catch (const SolveError& error) {

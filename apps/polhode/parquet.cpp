@@ -49,7 +49,7 @@ std::string last_line(const std::string& file) {
 
 }  // namespace
 
-void write_parquet(const ResultsReader& results, const std::vector<std::string>& names,
+void write_parquet(const io::ResultsReader& results, const std::vector<std::string>& names,
                    const std::string& file) {
   const char* wanted = std::getenv("POLHODE_PYTHON");
   const std::string python = find_program({wanted == nullptr ? "python3" : wanted});
@@ -59,7 +59,7 @@ void write_parquet(const ResultsReader& results, const std::vector<std::string>&
              "POLHODE_PYTHON, or write a .csv file",
              python.empty() ? "python3" : python));
   if (python.empty()) throw missing;
-  const std::vector<double> time = results.read(results::kTime);
+  const std::vector<double> time = results.read(io::results::kTime);
   const std::vector<ChannelColumn> columns = all_columns(results, names);
   const std::string unfinished = file + ".unfinished";
   nlohmann::ordered_json head = {
@@ -68,7 +68,7 @@ void write_parquet(const ResultsReader& results, const std::vector<std::string>&
       {"columns", nlohmann::ordered_json::array()},
       {"about",
        {{"title", results.attribute("/", "title")},
-        {"polhode", results.attribute(results::kProvenance, "version")}}}};
+        {"polhode", results.attribute(io::results::kProvenance, "version")}}}};
   head["columns"].push_back({"t", "s"});
   for (const ChannelColumn& c : columns) head["columns"].push_back({c.name, c.unit});
   const TemporaryFolder folder;
@@ -83,7 +83,7 @@ void write_parquet(const ResultsReader& results, const std::vector<std::string>&
     put(time);
     for (const ChannelColumn& c : columns) put(c.values);
     out.close();
-    if (!out) throw FileError(data, "cannot be written", "Free disk space");
+    if (!out) throw io::FileError(data, "cannot be written", "Free disk space");
   }
   const int input = ::open(data.c_str(), O_RDONLY | O_CLOEXEC);
   ChildProcess child({python, "-c", kScript}, log, input);
@@ -93,7 +93,7 @@ void write_parquet(const ResultsReader& results, const std::vector<std::string>&
   std::error_code fault;
   if (status == 0) std::filesystem::rename(unfinished, file, fault);
   if (status != 0 || fault)
-    throw FileError(file, format("cannot be written: {}", last_line(log)), "Name another file");
+    throw io::FileError(file, format("cannot be written: {}", last_line(log)), "Name another file");
 }
 
 }  // namespace polhode::cli

@@ -12,7 +12,7 @@ namespace polhode::cli {
 /// metadata of the columns. Python's pyarrow is used, as a C++ library would add some hundred
 /// megabytes: $POLHODE_PYTHON names the Python, else it is python3.
 /// @param names  As for channels_csv(). @throws FileError, InputError if there is no pyarrow.
-void write_parquet(const ResultsReader& results, const std::vector<std::string>& names,
+void write_parquet(const io::ResultsReader& results, const std::vector<std::string>& names,
                    const std::string& file);
 
 }  // namespace polhode::cli

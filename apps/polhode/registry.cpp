@@ -42,7 +42,7 @@ void add_isa_option(CLI::App& command, std::string& isa) {
                   "Instruction set: results are equal bit for bit within one; left out: the "
                   "model's analysis.isa, or the best of this machine")
       ->type_name("SET")
-      ->check(CLI::IsMember(analysis_fields().at("isa").choices));
+      ->check(CLI::IsMember(io::analysis_fields().at("isa").choices));
 }
 
 void add_wall_limit(CLI::App& command, std::optional<double>& limit, const char* how) {

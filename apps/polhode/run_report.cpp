@@ -27,12 +27,12 @@ std::string end_name(int exit_code) {
   }
 }
 
-Provenance provenance_of(const ModelArguments& model, const RunSummary& summary) {
+io::Provenance provenance_of(const ModelArguments& model, const RunSummary& summary) {
   return {.version = POLHODE_VERSION,
           .solver = summary.solver,
           .instruction_set = summary.instruction_set,
           .model_file = std::filesystem::path(model.file).filename().string(),
-          .model_text = read_file(model.file),
+          .model_text = io::read_file(model.file),
           .overrides = model.overrides};
 }
 
@@ -42,7 +42,7 @@ std::string counted(std::size_t count, const std::string& one, const std::string
 
 std::string summary_json(const RunSummary& s, int exit_code, const std::string& folder,
                          std::size_t frames) {
-  return polhode::summary_json(
+  return polhode::io::summary_json(
       s, {.end = end_name(exit_code), .exit_code = exit_code, .folder = folder, .frames = frames});
 }
 

@@ -23,7 +23,7 @@ namespace polhode::cli {
 [[nodiscard]] std::string summary_table(const RunSummary& summary);
 
 /// Provenance of the results of a run of this model. @throws FileError
-[[nodiscard]] Provenance provenance_of(const ModelArguments& model, const RunSummary& summary);
+[[nodiscard]] io::Provenance provenance_of(const ModelArguments& model, const RunSummary& summary);
 
 /// A count with its noun: "1 body", "3 bodies".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& one,

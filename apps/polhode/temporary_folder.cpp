@@ -10,7 +10,7 @@ namespace polhode::cli {
 
 TemporaryFolder::TemporaryFolder() {
   path_ = (std::filesystem::temp_directory_path() / "polhode-XXXXXX").string();
-  if (mkdtemp(path_.data()) == nullptr) throw FileError::from_errno(path_, "cannot be made");
+  if (mkdtemp(path_.data()) == nullptr) throw io::FileError::from_errno(path_, "cannot be made");
 }
 
 TemporaryFolder::~TemporaryFolder() {

@@ -71,11 +71,12 @@ SceneData scene_of_model(const ViewRequest& request, SceneOptions options) {
   model.output.hdf5 = true;
   const Simulation simulation = start_of(std::move(model), options);
   const TemporaryFolder folder;
-  Recorder recorder(simulation, folder.path(), provenance_of(request.input, simulation.summary()));
+  io::Recorder recorder(simulation, folder.path(),
+                        provenance_of(request.input, simulation.summary()));
   recorder.frame(simulation);
   recorder.close();
   add_remarks(simulation, options);
-  const ResultsReader results(folder.path() + "/" + results::kFileName);
+  const io::ResultsReader results(folder.path() + "/" + io::results::kFileName);
   return make_scene(results, &simulation.model(), options);
 }
 
@@ -86,7 +87,7 @@ bool is_results(const std::string& path) {
 }
 
 std::string results_path(const std::string& path) {
-  return fs::is_directory(path) ? path + "/" + results::kFileName : path;
+  return fs::is_directory(path) ? path + "/" + io::results::kFileName : path;
 }
 
 SceneData scene_of(const ViewRequest& request) {
@@ -97,7 +98,7 @@ SceneData scene_of(const ViewRequest& request) {
   if (!request.compared.empty()) options.max_bytes /= 2;
   if (!is_results(request.input.file)) return scene_of_model(request, options);
   const std::string path = results_path(request.input.file);
-  const ResultsReader results(path);
+  const io::ResultsReader results(path);
   std::optional<Model> model;
   try {
     model = model_of_results(results, fs::absolute(path).parent_path().string());
@@ -120,7 +121,7 @@ void write_view(const ViewRequest& request, const std::string& file, bool quiet)
   std::optional<SceneData> compared;
   if (!request.compared.empty()) compared = compared_scene_of(request);
   const std::string page = scene_page(viewer_text(), scene, compared ? &*compared : nullptr);
-  write_file_atomically(file, page, false);
+  io::write_file_atomically(file, page, false);
   if (quiet) return;
   const std::string part =
       scene.every > 1 ? format(", 1 in {} of the file", scene.every) : std::string();
@@ -137,7 +138,8 @@ void write_view_zip(const ViewRequest& request, const std::vector<std::string>& 
     one.input.file = input;
     const SceneData scene = scene_of(one);
     fs::path name = fs::path(input).lexically_normal();
-    if (!name.has_filename() || name.filename() == results::kFileName) name = name.parent_path();
+    if (!name.has_filename() || name.filename() == io::results::kFileName)
+      name = name.parent_path();
     const std::string stem = name.filename().stem().string();
     for (const SharedRecording& other : recordings)
       if (other.name == stem)
@@ -148,7 +150,7 @@ void write_view_zip(const ViewRequest& request, const std::vector<std::string>& 
                           scene_page(viewer_text(), scene)});
   }
   const std::string bytes = zip_archive(shared_pages(recordings));
-  write_file_atomically(file, bytes, false);
+  io::write_file_atomically(file, bytes, false);
   if (!quiet)
     say(format("{}: {}, {:.1f} MB. Unpack it and open index.html; it needs no network.", file,
                counted(recordings.size(), "recording", "recordings"),

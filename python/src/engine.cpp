@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <optional>
 
-#include <polhode/system/state_archive.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/results/summary_json.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/stepping/start.hpp>
+#include <polhode/system/state_archive.hpp>
 
 namespace polhode::python {
 
@@ -71,16 +71,17 @@ std::string Engine::run(Recording* recording, const std::string& folder,
   Attention attention(progress);
   const Use used(*this);
   const nb::gil_scoped_release unlocked;
-  std::optional<Recorder> file;
+  std::optional<io::Recorder> file;
   if (!folder.empty()) {
     const RunSummary s = simulation_->summary();
-    file.emplace(*simulation_, folder,
-                 Provenance{.version = POLHODE_VERSION,
-                            .solver = s.solver,
-                            .instruction_set = s.instruction_set,
-                            .model_file = std::filesystem::path(model().source_file).filename().string(),
-                            .model_text = model_text,
-                            .overrides = overrides});
+    file.emplace(
+        *simulation_, folder,
+        io::Provenance{.version = POLHODE_VERSION,
+                       .solver = s.solver,
+                       .instruction_set = s.instruction_set,
+                       .model_file = std::filesystem::path(model().source_file).filename().string(),
+                       .model_text = model_text,
+                       .overrides = overrides});
     file->step(*simulation_);
   }
   if (recording) recording->step(*simulation_);
@@ -98,15 +99,15 @@ std::string Engine::run(Recording* recording, const std::string& folder,
       &attention.stop);
   if (summary.end == RunEnd::finished || summary.end == RunEnd::not_converged) frame(*simulation_);
   if (file) file->close();
-  return summary_json(summary, {.end = end_name(summary.end),
-                                .exit_code = 0,
-                                .folder = folder,
-                                .frames = recording ? recording->frames() : 0});
+  return io::summary_json(summary, {.end = end_name(summary.end),
+                                    .exit_code = 0,
+                                    .folder = folder,
+                                    .frames = recording ? recording->frames() : 0});
 }
 
 std::string Engine::summary() {
   const RunSummary summary = use()->summary();
-  return summary_json(summary, {.end = end_name(summary.end)});
+  return io::summary_json(summary, {.end = end_name(summary.end)});
 }
 
 nb::bytes Engine::state() const {
@@ -168,8 +169,8 @@ nb::dict body_report(Engine& engine, int body) {
   result["velocity"] = array_of(m.v);
   result["angular_velocity"] = array_of(m.omega());
   result["acceleration"] = array_of(point.acceleration);
-  // Accelerations of points off the centre of mass give the angular acceleration normal to their arm:
-  // with all three axes each component twice.
+  // Accelerations of points off the centre of mass give the angular acceleration normal to their
+  // arm: with all three axes each component twice.
   const Vec3 omega = m.omega();
   const Mat3 axes = m.Lambda();
   Vec3 alpha = Vec3::Zero();
@@ -236,8 +237,8 @@ BodyMotion changed_motion(Engine& engine, int body, const Numbers& position,
 
 void set_body(Engine& engine, int body, const Numbers& position, const Numbers& orientation,
               const Numbers& velocity, const Numbers& angular_velocity) {
-  engine.set_motions({{body, changed_motion(engine, body, position, orientation, velocity,
-                                            angular_velocity)}});
+  engine.set_motions(
+      {{body, changed_motion(engine, body, position, orientation, velocity, angular_velocity)}});
 }
 
 /// Several bodies at once: index, position, orientation, velocity, angular velocity of each.
@@ -278,7 +279,8 @@ void bind_engine(nb::module_& m) {
       .def("run", &Engine::run, nb::arg("recording").none(), nb::arg("folder"),
            nb::arg("model_text"), nb::arg("overrides"), nb::arg("progress").none())
       .def("step", &step, nb::arg("limit"))
-      .def("record_frame", [](Engine& e, Recording& r) {
+      .def("record_frame",
+           [](Engine& e, Recording& r) {
              const Engine::Use simulation = e.use();
              r.frame(*simulation);
              r.step(*simulation);
@@ -303,15 +305,17 @@ void bind_engine(nb::module_& m) {
       .def_prop_ro("state_hash", [](Engine& e) { return e.simulation().state_hash(); })
       .def("body", &body_report, nb::arg("index"))
       .def("joint", &joint_report, nb::arg("index"))
-      .def("load", [](Engine& e, int i) { return e.use()->load(i); }, nb::arg("index"))
+      .def(
+          "load", [](Engine& e, int i) { return e.use()->load(i); }, nb::arg("index"))
       .def_prop_ro("probes", [](Engine& e) { return names_of(e.model().output.probes); })
-      .def("probe",
-           [](Engine& e, const std::string& name) {
-             const Engine::Use simulation = e.use();
-             return nb::make_tuple(nb::cast(simulation->probe_columns(name)),
-                                   nb::cast(simulation->probe(name)));
-           },
-           nb::arg("name"))
+      .def(
+          "probe",
+          [](Engine& e, const std::string& name) {
+            const Engine::Use simulation = e.use();
+            return nb::make_tuple(nb::cast(simulation->probe_columns(name)),
+                                  nb::cast(simulation->probe(name)));
+          },
+          nb::arg("name"))
       .def("energy", &energy)
       .def("summary", &Engine::summary);
 }

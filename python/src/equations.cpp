@@ -13,7 +13,8 @@ namespace {
 
 /// Residual and tangent of one step from the present state, at an iterate.
 ///
-/// @param x  Displacement and Cayley vector of each moving body over the step, then multipliers; none: the
+/// @param x  Displacement and Cayley vector of each moving body over the step, then multipliers;
+/// none: the
 ///           predictor with the present velocities.
 /// @returns residual, column starts, rows and values of the tangent, x, numbers of moving bodies.
 nb::tuple step_equations(Engine& engine, double dt, const std::optional<std::vector<double>>& x) {
@@ -21,7 +22,8 @@ nb::tuple step_equations(Engine& engine, double dt, const std::optional<std::vec
   Simulation& simulation = *used;
   const Model& model = engine.model();
   if (model.analysis.type != "dynamics" || !model.solids.empty() || simulation.has_contacts())
-    throw InputError("step_equations", "exist only for bodies and joints in dynamics, without solids and contacts",
+    throw InputError("step_equations",
+                     "exist only for bodies and joints in dynamics, without solids and contacts",
                      "Leave these out of the model");
   const System& system = simulation.system();
   const State& state = simulation.state();
@@ -59,7 +61,7 @@ nb::tuple step_equations(Engine& engine, double dt, const std::optional<std::vec
   for (int b = 0; b < bodies; ++b)
     residual.insert(residual.end(), newton.body_residual(b).begin(), newton.body_residual(b).end());
   for (int row = 0; row < rows; ++row) residual.push_back(newton.row_residual(row));
-  KktMatrix matrix(newton.topology());
+  linear::KktMatrix matrix(newton.topology());
   matrix.set(newton.values());
   // The engine multiplies rows of bodies by s, and multipliers.
   const double s = trial.scale(system);

@@ -11,7 +11,7 @@ namespace {
 
 nb::object errors() { return nb::module_::import_("polhode._errors"); }
 
-nb::tuple fault(const Diagnostic& d) {
+nb::tuple fault(const io::Diagnostic& d) {
   return nb::make_tuple(d.place.file, d.place.line, d.place.column, d.path, d.what, d.hint,
                         d.excerpt);
 }
@@ -25,19 +25,19 @@ void raise_model_error(const nb::list& faults) {
 void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
-  } catch (const ModelErrors& e) {
+  } catch (const io::ModelErrors& e) {
     nb::list faults;
-    for (const Diagnostic& d : e.diagnostics()) faults.append(fault(d));
+    for (const io::Diagnostic& d : e.diagnostics()) faults.append(fault(d));
     raise_model_error(faults);
   } catch (const InputError& e) {
-    Diagnostic d;
+    io::Diagnostic d;
     d.path = e.where();
     d.what = e.what_is_wrong();
     d.hint = e.hint();
     nb::list faults;
     faults.append(fault(d));
     raise_model_error(faults);
-  } catch (const FileError& e) {
+  } catch (const io::FileError& e) {
     PyErr_SetString(PyExc_OSError, e.what());
   }
 }

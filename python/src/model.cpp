@@ -5,12 +5,12 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/core/time_sum.hpp>
-#include <polhode/loads/registry.hpp>
-#include <polhode/io/text/file_error.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/io/schema/schema.hpp>
-#include <polhode/io/text/source_tree.hpp>
 #include <polhode/io/read/time_function.hpp>
+#include <polhode/io/schema/schema.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <polhode/io/text/source_tree.hpp>
+#include <polhode/loads/registry.hpp>
 
 #include <nanobind/stl/string_view.h>
 
@@ -27,7 +27,7 @@ bool reads_as(const std::string& text, Number& value) {
   return fault == std::errc() && end == text.data() + text.size();
 }
 
-nb::object scalar(const SourceNode& node) {
+nb::object scalar(const io::SourceNode& node) {
   if (node.in_quotes) return nb::str(node.text.c_str(), node.text.size());
   if (node.text == "true" || node.text == "false") return nb::bool_(node.text == "true");
   std::int64_t whole = 0;
@@ -38,18 +38,18 @@ nb::object scalar(const SourceNode& node) {
   return nb::str(node.text.c_str(), node.text.size());
 }
 
-nb::object tree(const SourceNode& node) {
+nb::object tree(const io::SourceNode& node) {
   switch (node.kind) {
-    case SourceNode::Kind::kEmpty:
+    case io::SourceNode::Kind::kEmpty:
       return nb::none();
-    case SourceNode::Kind::kText:
+    case io::SourceNode::Kind::kText:
       return scalar(node);
-    case SourceNode::Kind::kList: {
+    case io::SourceNode::Kind::kList: {
       nb::list list;
-      for (const SourceNode& child : node.children) list.append(tree(child));
+      for (const io::SourceNode& child : node.children) list.append(tree(child));
       return list;
     }
-    case SourceNode::Kind::kMap:
+    case io::SourceNode::Kind::kMap:
       break;
   }
   nb::dict map;
@@ -94,7 +94,8 @@ void set_function(CompiledModel& compiled, const std::string& load, int componen
     if (component < 0 || !here)
       here = turned;
     else if (turned)
-      here = std::make_shared<TimeSum>(TimeVector{here, turned, nullptr}, std::array{1.0, 1.0, 0.0});
+      here =
+          std::make_shared<TimeSum>(TimeVector{here, turned, nullptr}, std::array{1.0, 1.0, 0.0});
   }
 }
 
@@ -113,7 +114,7 @@ void set_motion_function(CompiledModel& compiled, const std::string& load,
 void add_offset(CompiledModel& compiled, const std::string& load, int component, double offset) {
   Model& model = compiled.model;
   LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
-  const auto constant = std::make_shared<ConstantFunction>(offset);
+  const auto constant = std::make_shared<io::ConstantFunction>(offset);
   const auto raised = [&](const TimeFunctionPtr& f) {
     return std::make_shared<TimeSum>(TimeVector{f, constant, nullptr}, std::array{1.0, 1.0, 0.0});
   };
@@ -130,11 +131,12 @@ void add_offset(CompiledModel& compiled, const std::string& load, int component,
 }  // namespace
 
 void bind_model(nb::module_& m) {
-  m.def("schema_text", &json_schema, "JSON Schema of the model file.");
-  m.def("read_text", &read_file, nb::arg("path"), "The text of a file.");
+  m.def("schema_text", &io::json_schema, "JSON Schema of the model file.");
+  m.def("read_text", &io::read_file, nb::arg("path"), "The text of a file.");
   m.def(
-      "parse", [](std::string text, std::string name) {
-        return tree(SourceTree::parse(std::move(text), std::move(name)).root());
+      "parse",
+      [](std::string text, std::string name) {
+        return tree(io::SourceTree::parse(std::move(text), std::move(name)).root());
       },
       nb::arg("text"), nb::arg("name"), "A model text as dicts, lists, numbers and texts.");
   m.def("closest", &closest, nb::arg("word"), nb::arg("candidates"),
@@ -156,10 +158,10 @@ void bind_model(nb::module_& m) {
       .def_prop_ro("duration", [](const CompiledModel& c) { return c.model.analysis.duration; });
   m.def(
       "compile",
-      [](const std::string& text, const std::string& name, const Overrides& overrides) {
+      [](const std::string& text, const std::string& name, const io::Overrides& overrides) {
         CompiledModel compiled;
         const nb::gil_scoped_release unlocked;
-        compiled.model = read_model_text(text, name, overrides);
+        compiled.model = io::read_model_text(text, name, overrides);
         return compiled;
       },
       nb::arg("text"), nb::arg("name"), nb::arg("overrides"), "Reads and checks a model text.");

@@ -4,8 +4,8 @@
 namespace polhode::python {
 
 Recording::Recording(const Simulation& simulation)
-    : layout_(results_layout(simulation)),
-      plan_(plan_results(layout_)),
+    : layout_(io::results_layout(simulation)),
+      plan_(io::plan_results(layout_)),
       columns_(plan_.channels.size()) {
   const OutputSpec& output = simulation.model().output;
   for (const ProbeSpec& spec : output.probes)
@@ -34,7 +34,7 @@ nb::dict Recording::probes() {
 void Recording::frame(const Simulation& simulation) {
   if (frames_ > 0 && simulation.time() <= last_) return;
   numbers_.clear();
-  list_numbers(results_frame(simulation), numbers_);
+  io::list_numbers(io::results_frame(simulation), numbers_);
   const double* next = numbers_.data();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const std::size_t size = plan_.channels[i].size();
@@ -48,7 +48,7 @@ void Recording::frame(const Simulation& simulation) {
 nb::dict Recording::channels() {
   nb::dict result;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const Channel& channel = plan_.channels[i];
+    const io::Channel& channel = plan_.channels[i];
     std::vector<std::size_t> shape{frames_};
     shape.insert(shape.end(), channel.dims.begin(), channel.dims.end());
     nb::object array;
@@ -65,8 +65,8 @@ nb::dict Recording::channels() {
 
 nb::dict Recording::views() const {
   nb::dict result;
-  for (const ChannelView& view : plan_.views) {
-    const Channel& channel = plan_.channels[view.channel];
+  for (const io::ChannelView& view : plan_.views) {
+    const io::Channel& channel = plan_.channels[view.channel];
     result[view.path.c_str()] = nb::make_tuple(channel.path, view.first, view.count, view.squeeze,
                                                view.unit.empty() ? channel.unit : view.unit);
   }
@@ -74,7 +74,7 @@ nb::dict Recording::views() const {
 }
 
 nb::dict Recording::fixed() const {
-  const FixedData data = fixed_data(layout_);
+  const io::FixedData data = io::fixed_data(layout_);
   nb::dict result;
   for (const auto& [path, names] : data.names) result[path.c_str()] = nb::cast(names);
   for (const auto& [path, numbers] : data.numbers)

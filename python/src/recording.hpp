@@ -33,8 +33,8 @@ class Recording {
     ProbeClock clock;
     std::vector<double> numbers{};
   };
-  ResultsLayout layout_;
-  FilePlan plan_;
+  io::ResultsLayout layout_;
+  io::FilePlan plan_;
   std::vector<std::vector<double>> columns_;
   std::vector<ProbeRows> probes_;
   std::vector<double> numbers_;

@@ -29,8 +29,7 @@ class Handle {
 /// Reads data sets of a results file, also while a run still writes it.
 class ResultsReader {
  public:
-  explicit ResultsReader(std::string path)
-      : path_(std::move(path)), file_(open(path_), H5Fclose) {}
+  explicit ResultsReader(std::string path) : path_(std::move(path)), file_(open(path_), H5Fclose) {}
 
   [[nodiscard]] std::vector<std::string> paths() const {
     std::vector<std::string> list;
@@ -66,8 +65,8 @@ class ResultsReader {
   /// An attribute of a group or data set as text or number; none if there is none.
   [[nodiscard]] nb::object attribute(const std::string& object, const std::string& name) const {
     if (H5Aexists_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return nb::none();
-    const Handle a(
-        H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle a(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                   H5Aclose);
     const Handle type(H5Aget_type(a), H5Tclose);
     if (H5Tget_class(type) != H5T_STRING) {
       double value = 0.0;
@@ -93,8 +92,8 @@ class ResultsReader {
     H5Pset_file_locking(access, false, true);
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
     if (file < 0)
-      throw FileError(path, "cannot be opened as HDF5",
-                      "Give the path of a file results.h5 that a run has written");
+      throw io::FileError(path, "cannot be opened as HDF5",
+                          "Give the path of a file results.h5 that a run has written");
     return file;
   }
 
@@ -102,7 +101,7 @@ class ResultsReader {
   [[nodiscard]] std::vector<T> numbers(hid_t set, hid_t type, std::size_t count) const {
     std::vector<T> values(count);
     if (count > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      throw FileError(path_, "a data set cannot be read", "Run the model again");
+      throw io::FileError(path_, "a data set cannot be read", "Run the model again");
     return values;
   }
 
@@ -133,7 +132,7 @@ class ResultsReader {
 }  // namespace
 
 void bind_results_reader(nb::module_& m) {
-  m.attr("results_format_version") = results::kFormatVersion;
+  m.attr("results_format_version") = io::results::kFormatVersion;
   nb::class_<ResultsReader>(m, "ResultsReader", "Reads a file results.h5.")
       .def(nb::init<std::string>(), nb::arg("path"))
       .def("paths", &ResultsReader::paths)

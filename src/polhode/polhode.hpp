@@ -15,3 +15,18 @@
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/simulation/simulation.hpp>
+
+namespace polhode {
+
+using geometry::composed;
+using geometry::find_shape_kind;
+using geometry::MassProperties;
+using geometry::placed;
+using geometry::shape_mass_properties;
+using geometry::ShapeKind;
+using io::ModelErrors;
+using io::Overrides;
+using io::read_model;
+using io::read_model_text;
+
+}  // namespace polhode

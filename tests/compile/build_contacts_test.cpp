@@ -21,9 +21,9 @@ const char* kBodies = R"(
 )";
 
 Model model_of(const std::string& more, const std::string& bodies = kBodies) {
-  return read_model_text("format: 1\ngravity: [0, 0, -10]\nbodies:" + bodies + more +
-                             "\nanalysis: {duration: 1 s, step: 10 ms}\n",
-                         "m.yaml");
+  return io::read_model_text("format: 1\ngravity: [0, 0, -10]\nbodies:" + bodies + more +
+                                 "\nanalysis: {duration: 1 s, step: 10 ms}\n",
+                             "m.yaml");
 }
 
 struct Built {

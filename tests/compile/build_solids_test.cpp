@@ -12,15 +12,15 @@ namespace {
 /// Rounding of sums of some hundred terms of size 1.
 constexpr double kRounding = 1e-12;
 
-Selection plane(const Vec3& normal, Selection::Level level) {
-  Selection s;
-  s.kind = Selection::Kind::kPlane;
+solids::Selection plane(const Vec3& normal, solids::Selection::Level level) {
+  solids::Selection s;
+  s.kind = solids::Selection::Kind::kPlane;
   s.normal = normal;
   s.level = level;
   return s;
 }
-Selection bottom() { return plane(Vec3::UnitZ(), Selection::Level::kMin); }
-Selection top() { return plane(Vec3::UnitZ(), Selection::Level::kMax); }
+solids::Selection bottom() { return plane(Vec3::UnitZ(), solids::Selection::Level::kMin); }
+solids::Selection top() { return plane(Vec3::UnitZ(), solids::Selection::Level::kMax); }
 
 /// A rubber block of 2 cells along each side, centred at the origin of its own coordinates.
 SolidSpec block(const std::string& name, const Vec3& size) {
@@ -172,7 +172,7 @@ TEST(BuildSolids, PrescribesTheComponentsGiven) {
 
 TEST(BuildSolids, RefusesANodeOnTwoBodies) {
   Model model = two_bodies_and_a_pad();
-  model.solids[0].bonded[1].nodes = {plane(Vec3::UnitX(), Selection::Level::kMin)};
+  model.solids[0].bonded[1].nodes = {plane(Vec3::UnitX(), solids::Selection::Level::kMin)};
   const std::string text = message(model);
   EXPECT_NE(text.find("solids.pad.bonded.plate: node 0 at (-0.05, -0.06, -0.1) and 2 others are "
                       "bonded to 'base' already"),

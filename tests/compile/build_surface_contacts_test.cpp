@@ -21,11 +21,11 @@ using testing::HasSubstr;
 Model model_of(const std::string& contacts, const std::string& pad = "",
                const std::string& analysis = "{duration: 1 s, step: 10 ms}",
                const std::string& floor = "") {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 bodies:
   floor: {fixed: true, shape: {plane: z})" +
-                             floor + R"(}
+                                 floor + R"(}
   plate: {shape: {box: [1, 1, 0.1]}, density: 500, position: [0, 0, 0.65]}
   roller: {shape: {cylinder: [0.4, 0.6]}, density: 500, position: [2, 0, 0.3]}
 materials:
@@ -36,8 +36,8 @@ solids:
     material: rubber
     bonded: {plate: zmax}
     )" + pad + "\n" + contacts +
-                             "\nanalysis: " + analysis + "\n",
-                         "m.yaml");
+                                 "\nanalysis: " + analysis + "\n",
+                             "m.yaml");
 }
 const std::string kAlone = "exclude: [[plate, floor], [plate, roller], [roller, floor]]";
 
@@ -88,12 +88,13 @@ TEST(BuildSurfaceContacts, PrefersLawsOfBodyPairsThenOfMaterialPairs) {
 /// The law as built, and the number of contact points.
 struct Built {
   Simulation simulation;
-  const SurfaceContact* contact = nullptr;
+  const surface_contact::SurfaceContact* contact = nullptr;
 
   Built(const std::string& contacts, const std::string& pad) : simulation(model_of(contacts, pad)) {
     for (const ContactMap::Surface& s : simulation.contact_map().surfaces)
       if (simulation.model().bodies[static_cast<std::size_t>(s.side.index)].name == "floor")
-        contact = &dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
+        contact = &dynamic_cast<const surface_contact::SurfaceContact&>(
+            simulation.system().nodes().group(s.group));
   }
 };
 
@@ -124,10 +125,11 @@ TEST(BuildSurfaceContacts, ChoosesBandAndStiffnessFromTheSolid) {
   quick.analysis.step = 1e-4;
   const Simulation fast(std::move(quick));
   const int group = fast.contact_map().surfaces.front().group;
-  EXPECT_NEAR(dynamic_cast<const SurfaceContact&>(fast.system().nodes().group(group))
-                  .law()
-                  .normal.stiffness,
-              1.5 * 0.02 * 1e6 / 1e-3, 1.0);
+  EXPECT_NEAR(
+      dynamic_cast<const surface_contact::SurfaceContact&>(fast.system().nodes().group(group))
+          .law()
+          .normal.stiffness,
+      1.5 * 0.02 * 1e6 / 1e-3, 1.0);
 }
 
 std::string complaint(const std::string& contacts, const std::string& pad = "",
@@ -165,25 +167,26 @@ TEST(BuildSurfaceContacts, RefusesFrictionAndContactsOfBodiesInStatics) {
 /// A rope from a mast to a ball, past a post.
 Model rope_of(const std::string& contact, const std::string& contacts = "contacts: {}",
               const std::string& mast = "shape: {box: [0.1, 0.1, 1]}") {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 bodies:
   mast: {fixed: true, )" + mast +
-                             R"(, position: [0, 0, -0.4]}
+                                 R"(, position: [0, 0, -0.4]}
   post: {fixed: true, shape: {sphere: 0.2}, position: [1, 0, -0.2]}
   floor: {fixed: true, shape: {plane: z}, position: [0, 0, -2]}
   ball: {shape: {sphere: 0.1}, mass: 1, position: [2, 0, 0]}
 cables:
   rope: {through: [[mast, [0, 0, 0.4]], [ball]], stiffness: 10 kN, free_length: 2, mass_per_length: 0.5,
          elements: 10, )" + contact +
-                             "}\n" + contacts + "\nanalysis: {duration: 1 s, step: 10 ms}\n",
-                         "rope.yaml");
+                                 "}\n" + contacts + "\nanalysis: {duration: 1 s, step: 10 ms}\n",
+                             "rope.yaml");
 }
 
-const SurfaceContact& contact_with(const Simulation& s, const std::string& body) {
+const surface_contact::SurfaceContact& contact_with(const Simulation& s, const std::string& body) {
   for (const ContactMap::Surface& surface : s.contact_map().surfaces)
     if (s.model().side_name(surface.side) == body)
-      return dynamic_cast<const SurfaceContact&>(s.system().nodes().group(surface.group));
+      return dynamic_cast<const surface_contact::SurfaceContact&>(
+          s.system().nodes().group(surface.group));
   throw std::logic_error("the cable does not meet " + body);
 }
 

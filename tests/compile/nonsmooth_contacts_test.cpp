@@ -11,7 +11,7 @@ namespace polhode::nonsmooth_contacts_tests {
 namespace {
 
 Model model_of(const std::string& more) {
-  return read_model_text("format: 1\ngravity: [0, 0, -10]\n" + more, "m.yaml");
+  return io::read_model_text("format: 1\ngravity: [0, 0, -10]\n" + more, "m.yaml");
 }
 
 const char* kBodies = R"(

@@ -18,14 +18,16 @@ ShapeSpec shape_of(const std::string& type, std::vector<double> sizes) {
 }
 
 TEST(RigidSurfaces, ExistForEveryKindOfShape) {
-  for (const ShapeKind& kind : shape_kinds()) {
+  for (const geometry::ShapeKind& kind : geometry::shape_kinds()) {
     const std::vector<double> sizes = test::fitting_sizes(kind, {0.2, 0.5, 0.4});
-    const RigidSurface surface = rigid_surface("a", shape_of(kind.name, sizes), 1e-4);
-    EXPECT_NE(surface.kind, RigidSurface::Kind::plane) << kind.name;
+    const surface_contact::RigidSurface surface =
+        rigid_surface("a", shape_of(kind.name, sizes), 1e-4);
+    EXPECT_NE(surface.kind, surface_contact::RigidSurface::Kind::plane) << kind.name;
     EXPECT_GT(surface.distance(Vec3(0.0, 0.0, 1.0), 2.0, true), 0.5) << kind.name;
     EXPECT_GT(surface.distance(Vec3(1.0, 0.0, 0.0), 2.0, true), 0.5) << kind.name;
   }
-  EXPECT_EQ(rigid_surface("a", shape_of("plane", {}), 1e-4).kind, RigidSurface::Kind::plane);
+  EXPECT_EQ(rigid_surface("a", shape_of("plane", {}), 1e-4).kind,
+            surface_contact::RigidSurface::Kind::plane);
 }
 
 TEST(RigidSurfaces, RefuseAnUnknownKindOfShape) {

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 /// A block of 1 m about the origin, of elements of 0.25 m.
 Model model_of(const std::string& more, const std::string& contacts = "contacts: {}",
                const std::string& block = "") {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 gravity: [0, 0, 0]
 materials:
@@ -25,9 +25,9 @@ solids:
   block:
     mesh: {block: {size: [1, 1, 1], cells: [4, 4, 4]}}
     material: rubber
-    )" + block + "\n" + more +
-                             "\n" + contacts + "\nanalysis: {duration: 10 ms, step: 1 ms}\n",
-                         "m.yaml");
+    )" + block + "\n" + more + "\n" +
+                                 contacts + "\nanalysis: {duration: 10 ms, step: 1 ms}\n",
+                             "m.yaml");
 }
 
 std::string complaint(Model model) {

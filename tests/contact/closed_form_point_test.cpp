@@ -15,16 +15,16 @@ using test::Random;
 
 /// A ball of a over a ball or a plane of b, within the search radius at both ends of the step.
 struct Case {
-  Shape a, b;
+  geometry::Shape a, b;
   PointData data;
   BodyStep step_a, step_b;
   StepContext context;
 
   Case(unsigned seed, bool plane_below) {
     Random random(seed);
-    a = sphere("a", 0.4, {0.1 * random.vector(), Mat3::Identity()});
-    b = plane_below ? plane({0.1 * random.vector(), random.frame()})
-                    : sphere("b", 0.6, {0.1 * random.vector(), Mat3::Identity()});
+    a = geometry::sphere("a", 0.4, {0.1 * random.vector(), Mat3::Identity()});
+    b = plane_below ? geometry::plane({0.1 * random.vector(), random.frame()})
+                    : geometry::sphere("b", 0.6, {0.1 * random.vector(), Mat3::Identity()});
     context.dt = 1e-2;
     context.ga = GeneralizedAlpha::from_spectral_radius(1.0);
     BodyMotion at_a = random.motion(), at_b = random.motion();
@@ -88,10 +88,12 @@ TEST(ClosedFormPoint, AgreesWithTheGeneralFormulas) {
 /// Gap after motions far below the rounding of positions: it changes by their component along the
 /// normal. @tests{contact-gap-change}
 TEST(ClosedFormPoint, ResolvesGapChangesBelowTheRoundingOfPositions) {
-  const Shape ball = sphere("ball", 0.4), other = sphere("other", 0.6), floor = plane();
-  const Shape block = box("block", {0.2, 0.3, 0.4}), table = box("table", {2.0, 2.0, 0.4});
+  const geometry::Shape ball = geometry::sphere("ball", 0.4),
+                        other = geometry::sphere("other", 0.6), floor = geometry::plane();
+  const geometry::Shape block = geometry::box("block", {0.2, 0.3, 0.4}),
+                        table = geometry::box("table", {2.0, 2.0, 0.4});
   struct Scene {
-    const Shape *a, *b;
+    const geometry::Shape *a, *b;
     int corner;
     double above;  ///< Of a over b [m].
   };

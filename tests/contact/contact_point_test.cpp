@@ -21,8 +21,8 @@ struct Encounter {
 
 /// Moves b towards a from a random side until a feature pair is within the search radius; then a
 /// random step.
-Encounter encounter(const Shape& a, const Shape& b, const StepContext& context, Random& random,
-                    double reach) {
+Encounter encounter(const geometry::Shape& a, const geometry::Shape& b, const StepContext& context,
+                    Random& random, double reach) {
   Encounter e{PairMotion(random, context), {}};
   PairMotion& m = e.motion;
   m.a_n.r.setZero();
@@ -54,7 +54,8 @@ Encounter encounter(const Shape& a, const Shape& b, const StepContext& context, 
   return e;
 }
 
-PointData data_of(const OrderedPair& p, const Shape& a, const Shape& b, const NormalLaw& law) {
+PointData data_of(const OrderedPair& p, const geometry::Shape& a, const geometry::Shape& b,
+                  const NormalLaw& law) {
   PointData d;
   d.pair = p.pair;
   d.a = p.swapped ? &b : &a;
@@ -87,7 +88,7 @@ class EveryPairOfShapes : public testing::TestWithParam<std::tuple<int, int>> {
         a_(all_[std::get<0>(GetParam())].shape),
         b_(all_[std::get<1>(GetParam())].shape) {}
   std::vector<NamedShape> all_;
-  const Shape &a_, &b_;
+  const geometry::Shape &a_, &b_;
 };
 
 constexpr double kReach = 2e-4;  // shapes of a metre with a rounding of about 3e-4
@@ -146,7 +147,7 @@ TEST_P(EveryPairOfShapes, HasGapsInDoubleDoublePrecision) {
   for (int trial = 0; trial < 9; ++trial) {
     const Encounter e = encounter(a_, b_, context_of(1.0, 0.01), random, kReach);
     for (const OrderedPair& p : e.pairs) {
-      const Shape &x = p.swapped ? b_ : a_, &y = p.swapped ? a_ : b_;
+      const geometry::Shape &x = p.swapped ? b_ : a_, &y = p.swapped ? a_ : b_;
       const auto moved = [&](double more) {
         BodyStep first = e.motion.a();
         const BodyStep second = e.motion.b();

@@ -20,16 +20,16 @@ struct Outcome {
   double lowest = 1e9;  ///< Centre of mass of any body [m].
 };
 
-contact::Shape shape_of(Random& random, int kind, const std::string& name) {
+geometry::Shape shape_of(Random& random, int kind, const std::string& name) {
   using namespace contact;
   const auto size = [&] { return 0.15 + 0.2 * std::abs(random.vector(1.0).x()); };
   switch (kind) {
     case 0:
-      return sphere(name, size());
+      return geometry::sphere(name, size());
     case 1:
-      return capsule(name, 0.6 * size(), size());
+      return geometry::capsule(name, 0.6 * size(), size());
     case 2:
-      return box(name, {size(), size(), size()});
+      return geometry::box(name, {size(), size(), size()});
     case 3:
       return cylinder(name, size(), size());
     case 4:
@@ -39,17 +39,17 @@ contact::Shape shape_of(Random& random, int kind, const std::string& name) {
     case 6: {
       std::vector<Vec3> points = stone(static_cast<unsigned>(name.back()));
       for (Vec3& x : points) x *= 0.4;
-      return hull(name, points);
+      return geometry::hull(name, points);
     }
     default: {
       const double R = 0.5 * size();
-      return mesh(name, torus(R, 0.4 * R));
+      return geometry::mesh(name, torus(R, 0.4 * R));
     }
   }
 }
 
 /// A bowl with bumps, 12 m wide.
-contact::Shape bowl() {
+geometry::Shape bowl() {
   const int n = 13;
   std::vector<double> heights;
   for (int iy = 0; iy < n; ++iy)
@@ -57,7 +57,7 @@ contact::Shape bowl() {
       const double x = ix - 6, y = iy - 6;
       heights.push_back(0.1 + 0.05 * (x * x + y * y) + 0.1 * std::sin(5.0 * x + 3.0 * y));
     }
-  return contact::height_field("bowl", n, 1.0, heights);
+  return geometry::height_field("bowl", n, 1.0, heights);
 }
 
 Outcome soak(unsigned seed, double duration) {

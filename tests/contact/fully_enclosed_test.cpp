@@ -13,15 +13,15 @@ namespace {
 
 using polhode::test::Scene;
 
-TriangleSurface cube(double size) {
+geometry::TriangleSurface cube(double size) {
   const double sizes[] = {size, size, size};
-  return shape_surface(*find_shape_kind("box"), sizes);
+  return geometry::shape_surface(*geometry::find_shape_kind("box"), sizes);
 }
 
 /// A cube with a hollow of half its size.
-TriangleSurface shell() {
-  TriangleSurface s = cube(1.0);
-  const TriangleSurface hole = cube(0.5);
+geometry::TriangleSurface shell() {
+  geometry::TriangleSurface s = cube(1.0);
+  const geometry::TriangleSurface hole = cube(0.5);
   const int first = static_cast<int>(s.points.size());
   s.points.insert(s.points.end(), hole.points.begin(), hole.points.end());
   for (const auto& t : hole.triangles)
@@ -29,17 +29,19 @@ TriangleSurface shell() {
   return s;
 }
 
-std::optional<FullyEnclosed> ball_in(const Shape& surface, const Vec3& at, double diameter = 0.05) {
+std::optional<FullyEnclosed> ball_in(const geometry::Shape& surface, const Vec3& at,
+                                     double diameter = 0.05) {
   const Mat3 turn = quaternion_from_rotation_vector({0.3, -0.2, 0.5}).toRotationMatrix();
   const Vec3 shift(3.0, -2.0, 1.0);
   const Mat3 upright = Mat3::Identity();
-  return fully_enclosed(sphere("ball", diameter), surface,
+  return fully_enclosed(geometry::sphere("ball", diameter), surface,
                         Placement<double>(shift + turn * at, upright, 0),
                         Placement<double>(shift, turn, 6));
 }
 
 TEST(FullyEnclosed, FindsBodiesWithinAClosedSurface) {
-  const Shape solid = mesh("cube", cube(1.0)), hollow = mesh("shell", shell());
+  const geometry::Shape solid = geometry::mesh("cube", cube(1.0)),
+                        hollow = geometry::mesh("shell", shell());
   const std::optional<FullyEnclosed> found = ball_in(solid, {0.1, 0.3, 0.0});
   ASSERT_TRUE(found);
   EXPECT_GT(found->depth, 0.2 + 0.025);  // to the face, and the diameter of the ball
@@ -48,14 +50,14 @@ TEST(FullyEnclosed, FindsBodiesWithinAClosedSurface) {
   EXPECT_FALSE(ball_in(solid, {0.1, 0.6, 0.0}));
   EXPECT_FALSE(ball_in(hollow, {0.1, 0.0, 0.0})) << "in its hollow";
   EXPECT_TRUE(ball_in(hollow, {0.38, 0.1, 0.0})) << "in its wall";
-  const Shape ring = mesh("ring", test::torus(1.0, 0.3));
+  const geometry::Shape ring = geometry::mesh("ring", test::torus(1.0, 0.3));
   EXPECT_TRUE(ball_in(ring, {0.0, 1.0, 0.0}));
   EXPECT_FALSE(ball_in(ring, {0.0, 0.0, 0.0})) << "in its hole";
 }
 
 TEST(FullyEnclosed, FindsBodiesBelowAHeightField) {
   const double heights[] = {0.0, 0.2, 0.0, 0.2, 0.4, 0.2, 0.0, 0.2, 0.0};
-  const Shape field = height_field("field", 3, 1.0, heights);
+  const geometry::Shape field = geometry::height_field("field", 3, 1.0, heights);
   EXPECT_TRUE(ball_in(field, {0.1, 0.2, 0.1}));
   EXPECT_FALSE(ball_in(field, {0.1, 0.2, 0.7}));
   EXPECT_FALSE(ball_in(field, {1.3, 0.2, -0.3})) << "beside it";
@@ -63,7 +65,7 @@ TEST(FullyEnclosed, FindsBodiesBelowAHeightField) {
 
 TEST(FullyEnclosed, IsAnOverlapAtTheStartWhereNoFeatureIsNear) {
   Scene s;
-  s.add("rock", mesh("rock", cube(1.0)), 100.0, Vec3::Constant(10.0), {});
+  s.add("rock", geometry::mesh("rock", cube(1.0)), 100.0, Vec3::Constant(10.0), {});
   BodyMotion inside;
   inside.r = {0.3, 0.0, 0.0};
   s.add_ball("ball", 0.02, 1.0, inside);

@@ -21,10 +21,10 @@ using namespace test;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Outer diameter 0.6 m, inner 0.4 m, length 0.8 m.
-Shape tube_of_tests() { return round_tube(0.6, 0.4, 0.8); }
+geometry::Shape tube_of_tests() { return round_tube(0.6, 0.4, 0.8); }
 
 /// A place on an inner rim of the tube about z.
-Vec3 on_rim(const Shape& tube, bool upper, double angle) {
+Vec3 on_rim(const geometry::Shape& tube, bool upper, double angle) {
   const double r = tube.half[1], h = upper ? tube.half[2] : -tube.half[2];
   return {r * std::cos(angle), r * std::sin(angle), h};
 }
@@ -57,11 +57,12 @@ double weight_of_halves(const Vec3& axis) {
 /// Bars across a mouth, leaning in it, and along it: the pairs that count have the exact distance.
 TEST(MouthRim, IsAsNearToBarsAsAllItsPoints) {
   Random random(71);
-  const Shape tube = tube_of_tests();
+  const geometry::Shape tube = tube_of_tests();
   const Mat3 still = Mat3::Identity();
   const Placement<double> at_tube(Vec3::Zero(), still, 0);
   int steep = 0, flat = 0;
-  for (const Shape& bar : {capsule("pen", 0.01, 1.0), cylinder("rod", 0.01, 1.0)})
+  for (const geometry::Shape& bar :
+       {geometry::capsule("pen", 0.01, 1.0), cylinder("rod", 0.01, 1.0)})
     for (int trial = 0; trial < 600; ++trial) {
       const bool upper = trial % 2 == 0;
       Vec3 axis = random.direction();
@@ -102,10 +103,10 @@ TEST(MouthRim, IsAsNearToBarsAsAllItsPoints) {
 /// Arcs of a rim over solids that may touch all of it at once.
 TEST(MouthRim, IsAsNearToEggsAndConesAsManyPoints) {
   Random random(72);
-  const Shape tube = tube_of_tests();
+  const geometry::Shape tube = tube_of_tests();
   const Mat3 still = Mat3::Identity();
   const Placement<double> at_tube(Vec3::Zero(), still, 6);
-  for (const Shape& solid : {ellipsoid("egg", {0.5, 0.6, 0.8}), cone("cone", 0.6, 0.7)})
+  for (const geometry::Shape& solid : {ellipsoid("egg", {0.5, 0.6, 0.8}), cone("cone", 0.6, 0.7)})
     for (int trial = 0; trial < 30; ++trial) {
       const Mat3 L = random.frame();
       const Vec3 r = Vec3(0.0, 0.0, tube.half[2] + 0.35) + random.vector(0.15);
@@ -133,7 +134,7 @@ TEST(MouthRim, IsAsNearToEggsAndConesAsManyPoints) {
 /// on; its slope and normal are the derivative of the gap.
 // @tests{contact-mouth-on-axis}
 TEST(MouthRim, IsSmoothToABallOnTheAxis) {
-  const Shape tube = tube_of_tests(), ball = sphere("ball", 0.6);
+  const geometry::Shape tube = tube_of_tests(), ball = geometry::sphere("ball", 0.6);
   const double r = tube.half[1], h = 0.2;
   const Mat3 still = Mat3::Identity();
   const Placement<double> at_tube(Vec3::Zero(), still, 6);
@@ -165,7 +166,8 @@ TEST(MouthRim, IsSmoothToABallOnTheAxis) {
 
 /// On the face of a thick end a body has the gap of its plane, over the mouth it is out of reach.
 TEST(MouthRim, EndsWhereTheFaceOfTheEndBegins) {
-  const Shape tube = round_tube(0.6, 0.2, 0.8), egg = ellipsoid("egg", {0.05, 0.04, 0.03});
+  const geometry::Shape tube = round_tube(0.6, 0.2, 0.8),
+                        egg = ellipsoid("egg", {0.05, 0.04, 0.03});
   const double roundings = tube.rounding + egg.rounding;
   const Mat3 still = Mat3::Identity();
   const Placement<double> at_tube(Vec3::Zero(), still, 6);

@@ -16,22 +16,25 @@ using namespace contact;
 using namespace test;
 
 std::vector<NamedShape> round_shapes() {
-  const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
+  const geometry::ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
   std::vector<NamedShape> all;
   for (const RoundSolid* solid : round_solids()) {
     const std::string name(solid->name);
-    const std::vector<double> sizes = fitting_sizes(*find_shape_kind(name), {0.7, 0.9, 0.5});
+    const std::vector<double> sizes =
+        fitting_sizes(*geometry::find_shape_kind(name), {0.7, 0.9, 0.5});
     all.push_back({name, solid->shape(name, sizes, place, 0.0)});
   }
   return all;
 }
 
 /// Number of parts that can come near faces.
-int parts_of(const Shape& round) { return std::max(1, static_cast<int>(round.flat_ends.size())); }
+int parts_of(const geometry::Shape& round) {
+  return std::max(1, static_cast<int>(round.flat_ends.size()));
+}
 
 /// Smallest distance of sample points on an ellipsoid from a solid. It exceeds the exact distance
 /// by no more than the spacing of the points allows.
-double sampled(const Shape& part, const Shape& b, const Placement<double>& at_a,
+double sampled(const geometry::Shape& part, const geometry::Shape& b, const Placement<double>& at_a,
                const Placement<double>& at_b) {
   double least = 1e9;
   const int n = 300;
@@ -49,7 +52,8 @@ double sampled(const Shape& part, const Shape& b, const Placement<double>& at_a,
 TEST(PartGap, IsTheMinimumOverManyPoints) {
   Random random(31);
   for (const NamedShape& round : round_shapes())
-    for (const Shape& b : {box("box", {0.8, 0.7, 0.5}), hull("hull", stone(5))}) {
+    for (const geometry::Shape& b :
+         {geometry::box("box", {0.8, 0.7, 0.5}), geometry::hull("hull", stone(5))}) {
       int met = 0;
       for (int trial = 0; trial < 12; ++trial) {
         const BodyMotion m = random.motion();
@@ -57,7 +61,7 @@ TEST(PartGap, IsTheMinimumOverManyPoints) {
         const Vec3 r = 1.1 * random.direction();
         const Placement<double> at_a(r, L_a, 0), at_b(Vec3::Zero(), L_b, 6);
         for (int which = 0; which < parts_of(round.shape); ++which) {
-          const Shape part = part_of(round.shape, which);
+          const geometry::Shape part = part_of(round.shape, which);
           const double expected = sampled(part, b, at_a, at_b);
           if (expected < 0.0) continue;
           const Gap<double> g =
@@ -75,15 +79,16 @@ TEST(PartGap, IsTheMinimumOverManyPoints) {
 /// Distance of the outer rim of a tube from solids in front of it, beside it and within its mouth.
 TEST(RingGap, IsTheMinimumOverManyPoints) {
   Random random(34);
-  const Shape tube = round_tube(0.8, 0.5, 0.7);
+  const geometry::Shape tube = round_tube(0.8, 0.5, 0.7);
   int met = 0, within = 0;
-  for (const Shape& b :
-       {box("box", {0.8, 0.7, 0.5}), hull("hull", stone(5)), box("needle", {0.1, 0.1, 1.5})})
+  for (const geometry::Shape& b :
+       {geometry::box("box", {0.8, 0.7, 0.5}), geometry::hull("hull", stone(5)),
+        geometry::box("needle", {0.1, 0.1, 1.5})})
     for (int trial = 0; trial < 300; ++trial) {
       const Mat3 L_a = random.frame(), L_b = random.frame();
       const Placement<double> at_a(0.7 * random.direction(), L_a, 0), at_b(Vec3::Zero(), L_b, 6);
       for (const int which : {0, 1}) {
-        const Shape part = part_of(tube, which);
+        const geometry::Shape part = part_of(tube, which);
         const double R = part.half.x();
         double expected = 1e9;
         for (int k = 0; k < 2000; ++k) {
@@ -114,10 +119,12 @@ TEST(RingGap, IsTheMinimumOverManyPoints) {
 
 /// Overlap of a part that penetrates a face far from the edges: its depth below the face.
 TEST(PartGap, IsNegativeWhereThePartPenetrates) {
-  const Shape egg = ellipsoid("egg", {0.3, 0.2, 0.4}), crate = box("crate", {2.0, 2.0, 2.0});
-  const Shape field = height_field("field", 5, 1.0, std::vector<double>(25, 0.0));
+  const geometry::Shape egg = ellipsoid("egg", {0.3, 0.2, 0.4}),
+                        crate = geometry::box("crate", {2.0, 2.0, 2.0});
+  const geometry::Shape field =
+      geometry::height_field("field", 5, 1.0, std::vector<double>(25, 0.0));
   const Mat3 upright = Mat3::Identity();
-  const auto gap_at = [&](double z, const Shape& b, const FeaturePair& pair) {
+  const auto gap_at = [&](double z, const geometry::Shape& b, const FeaturePair& pair) {
     return gap(pair, egg, b, Placement<double>({0.2, 0.3, z}, upright, 0),
                Placement<double>(Vec3::Zero(), upright, 6))
         .distance;
@@ -137,7 +144,7 @@ TEST(PartGap, IsNegativeWhereThePartPenetrates) {
 
 /// Position of a point along the straight side of a round solid, from 0 at the lower end to 1; −1
 /// below the lower end.
-double along_side(const Shape& s, const Vec3& x_0) {
+double along_side(const geometry::Shape& s, const Vec3& x_0) {
   const Vec3 x = s.axes.transpose() * (x_0 - s.centre);
   const double R = s.half[0], H = s.half[2], top = s.flat_ends.size() == 2 ? R : 0.0;
   if (x.z() < -H) return -1.0;
@@ -149,10 +156,11 @@ double along_side(const Shape& s, const Vec3& x_0) {
 /// side is exact.
 TEST(RoundOverEdge, IsTheMinimumOverManyPoints) {
   Random random(32);
-  const Shape with_edges[] = {box("box", {0.8, 0.7, 0.5}), capsule("capsule", 0.3, 0.8)};
+  const geometry::Shape with_edges[] = {geometry::box("box", {0.8, 0.7, 0.5}),
+                                        geometry::capsule("capsule", 0.3, 0.8)};
   int compared = 0, sides = 0;
   for (const NamedShape& round : round_shapes())
-    for (const Shape& b : with_edges)
+    for (const geometry::Shape& b : with_edges)
       for (int trial = 0; trial < 40; ++trial) {
         const BodyMotion m = random.motion();
         const Mat3 L_a = m.q.toRotationMatrix(), L_b = Random(trial).frame();
@@ -189,7 +197,8 @@ TEST(PartGap, IsThatOfThePlaneOverItsTriangles) {
   Random random(33);
   std::vector<NamedShape> shapes = round_shapes();
   shapes.push_back({"tube", round_tube(0.8, 0.5, 0.7)});
-  const Shape field = height_field("field", 15, 0.15, std::vector<double>(225, 0.0));
+  const geometry::Shape field =
+      geometry::height_field("field", 15, 0.15, std::vector<double>(225, 0.0));
   NormalLaw law;
   law.stiffness = 1e5;
   law.tolerance = 2e-4;
@@ -199,7 +208,7 @@ TEST(PartGap, IsThatOfThePlaneOverItsTriangles) {
       const Placement<double> ground(Vec3::Zero(), none, 6);
       Vec3 r(0.15 * random.vector(1.0).x(), 0.15 * random.vector(1.0).y(), 1.0);
       const auto least = [&](int which) {
-        const Shape part = part_of(round.shape, which);
+        const geometry::Shape part = part_of(round.shape, which);
         const Placement<double> at(r, L, 0);
         const V3<double> x = extreme_point(part, 0, v3(Vec3::UnitZ()), at);
         return x.z - part.rounding - field.rounding - field.corners[0].z();

@@ -23,7 +23,7 @@ using namespace test;
 struct Sided {
   std::string name;
   double radius, half;
-  Shape shape;
+  geometry::Shape shape;
   [[nodiscard]] bool is_capsule() const { return name == "capsule"; }
 };
 
@@ -33,7 +33,7 @@ std::vector<Sided> sided_shapes() {
           {"rod", 0.01, 2.0, cylinder("rod", 0.02, 4.0)},
           {"tube", 0.3, 0.4, round_tube(0.6, 0.5, 0.8)},
           {"pipe", 0.01, 2.0, round_tube(0.02, 0.016, 4.0)},
-          {"capsule", 0.05, 0.8, capsule("capsule", 0.1, 1.6)}};
+          {"capsule", 0.05, 0.8, geometry::capsule("capsule", 0.1, 1.6)}};
 }
 
 /// Rotation of z to a unit vector.
@@ -112,7 +112,7 @@ TEST(RoundGap, OfParallelSidesIsThatOfTheirAxes) {
 TEST(RoundGap, OfNearlyParallelSidesIsThatOfTheirAxes) {
   for (const double length : {0.04, 0.4, 4.0})
     for (double angle = 1e-6; angle < 0.3; angle *= 1.5) {
-      const Shape rod = cylinder("rod", 0.02, length);
+      const geometry::Shape rod = cylinder("rod", 0.02, length);
       const double distance = -1e-6;
       const Mat3 L_a = along({std::sin(angle), 0.0, std::cos(angle)}), L_b = Mat3::Identity();
       const Placement<double> at_a(Vec3(0.0, 0.02 + distance, 0.0), L_a, 0),
@@ -134,12 +134,12 @@ TEST(RoundGap, OfNearlyParallelSidesIsThatOfTheirAxes) {
 /// Gap of a tube's outer side to rods and an ellipsoid in the tube, in its mouth, and outside it.
 TEST(RoundGap, KeepsTheMouthOfATubeOpen) {
   Random random(43);
-  const Shape tube = round_tube(0.6, 0.5, 0.8);
+  const geometry::Shape tube = round_tube(0.6, 0.5, 0.8);
   const double R = tube.half[0], H = hull_of_tube(tube).half[2], wall = 0.05;
   const Mat3 still = Mat3::Identity();
   const Placement<double> at_tube(Vec3::Zero(), still, 6);
   int within = 0, outside = 0;
-  for (const Shape& b :
+  for (const geometry::Shape& b :
        {cylinder("rod", 0.1, 1.2), ellipsoid("egg", {0.3, 0.2, 0.4}), cylinder("coin", 0.4, 0.02)})
     for (int trial = 0; trial < 600; ++trial) {
       const Mat3 L = random.frame();

@@ -47,7 +47,7 @@ class Scene {
   explicit Scene(const Vec3& gravity = {0.0, 0.0, -9.81}) { system.set_gravity(gravity); }
 
   /// A body with one shape at its centre of mass. @returns its index.
-  int add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& inertia,
+  int add(const std::string& name, const geometry::Shape& shape, double mass, const Vec3& inertia,
           const BodyMotion& start) {
     BodyData data;
     data.name = name;
@@ -59,12 +59,12 @@ class Scene {
     return body;
   }
   int add_ball(const std::string& name, double radius, double mass, const BodyMotion& start) {
-    return add(name, contact::sphere(name, 2.0 * radius), mass,
+    return add(name, geometry::sphere(name, 2.0 * radius), mass,
                Vec3::Constant(0.4 * mass * radius * radius), start);
   }
   int add_box(const std::string& name, const Vec3& size, double mass, const BodyMotion& start) {
     const Vec3 s = size.cwiseProduct(size);
-    return add(name, contact::box(name, size), mass,
+    return add(name, geometry::box(name, size), mass,
                mass / 12.0 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()), start);
   }
   /// A joint between two bodies, or a body and the ground, at a position in the ground frame; the
@@ -82,9 +82,9 @@ class Scene {
   [[nodiscard]] double parting() const;
   /// The half space below a plane through the origin, on the ground.
   void add_floor(const Vec3& normal = Vec3::UnitZ()) {
-    contact::ShapePlace place;
+    geometry::ShapePlace place;
     place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
-    contacts->add_shape({kGround, "floor", contact::plane(place)});
+    contacts->add_shape({kGround, "floor", geometry::plane(place)});
   }
   /// SPHERES_IN_A_BIN: n spheres of 0.1 m and 1 kg over a bin with walls.
   void add_bin(int n, double side) {
@@ -99,15 +99,15 @@ class Scene {
     }
     add_floor();
     for (const Vec3& inwards : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
-      contact::ShapePlace place;
+      geometry::ShapePlace place;
       place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), inwards).toRotationMatrix();
       place.origin = -0.5 * side * inwards;
-      contacts->add_shape({kGround, "wall", contact::plane(place)});
+      contacts->add_shape({kGround, "wall", geometry::plane(place)});
     }
   }
   /// A bar on a body, moving with it. @returns its mass.
   double add_bar(int body, const Bar& bar) {
-    const Mesh mesh = make_mesh(
+    const solids::Mesh mesh = solids::make_mesh(
         "bar", "block",
         {{"size", {bar.size.x(), bar.size.y(), bar.size.z()}}, {"cells", bar.cells}}, "hex8");
     const BodyMotion& m = starts_.at(body);
@@ -127,20 +127,20 @@ class Scene {
       }
       system.add_node(node);
     }
-    MaterialDescription material;
+    solids::MaterialDescription material;
     material.kind = "neo_hookean";
     material.values = {{"youngs_modulus", bar.stiffness}, {"poisson_ratio", 0.3}};
     material.relaxation_time = bar.relaxation_time;
-    SolidElementsDescription d;
+    solids::SolidElementsDescription d;
     d.name = "bar";
     d.element = "hex8_eas9";
-    d.material = make_material("materials.m", material);
+    d.material = solids::make_material("materials.m", material);
     d.density = bar.density;
     d.connectivity = mesh.blocks.at(0).nodes;
     for (int& node : d.connectivity) node += first;
     bar_points_.insert(bar_points_.end(), X.begin(), X.end());
     d.X = bar_points_;
-    system.add_elements(make_solid_elements(std::move(d)));
+    system.add_elements(solids::make_solid_elements(std::move(d)));
     return bar.density * bar.size.prod();
   }
   void law(double mu, double restitution, double tolerance = 0.0) {

@@ -22,12 +22,12 @@ namespace polhode::test {
 
 struct NamedShape {
   std::string name;
-  contact::Shape shape;
+  geometry::Shape shape;
 };
 
 /// A ring of n × 8 quadrilaterals, split in triangles: closed and not convex.
-inline TriangleSurface torus(double R, double r, int n = 12) {
-  TriangleSurface s;
+inline geometry::TriangleSurface torus(double R, double r, int n = 12) {
+  geometry::TriangleSurface s;
   const int m = 8;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < m; ++j) {
@@ -55,33 +55,34 @@ inline std::vector<Vec3> stone(unsigned seed) {
 }
 
 /// Diameters and length of a tube, with the flat sides that represent it for edges and faces.
-inline contact::Shape round_tube(double outer, double inner, double length,
-                                 const contact::ShapePlace& place = {}) {
+inline geometry::Shape round_tube(double outer, double inner, double length,
+                                  const geometry::ShapePlace& place = {}) {
   const std::vector<double> sizes{outer, inner, length};
   return contact::tube("tube", outer, inner, length,
-                       shape_surface(*find_shape_kind("tube"), sizes, 48), place);
+                       geometry::shape_surface(*geometry::find_shape_kind("tube"), sizes, 48),
+                       place);
 }
 
 /// One shape of every kind, about a metre in size, off the body's centre. Kinds without an entry
 /// here follow those that have one.
 inline std::vector<NamedShape> every_shape() {
   using namespace contact;
-  const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
+  const geometry::ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
   std::vector<double> heights;
   for (int i = 0; i < 36; ++i) heights.push_back(0.1 * std::sin(1.3 * i) * std::cos(0.7 * i));
   std::vector<NamedShape> all{
-      {"sphere", sphere("sphere", 0.8, place)},
-      {"capsule", capsule("capsule", 0.4, 0.8, place)},
-      {"box", box("box", {0.8, 0.7, 0.5}, place)},
+      {"sphere", geometry::sphere("sphere", 0.8, place)},
+      {"capsule", geometry::capsule("capsule", 0.4, 0.8, place)},
+      {"box", geometry::box("box", {0.8, 0.7, 0.5}, place)},
       {"cylinder", cylinder("cylinder", 0.7, 0.9, place)},
       {"cone", cone("cone", 0.8, 0.9, place)},
       {"ellipsoid", ellipsoid("ellipsoid", {0.9, 0.7, 0.5}, place)},
-      {"hull", hull("hull", stone(5), place)},
-      {"mesh", mesh("mesh", torus(0.35, 0.15), place)},
-      {"height_field", height_field("height_field", 6, 0.3, heights, place)},
-      {"plane", plane(place)},
+      {"hull", geometry::hull("hull", stone(5), place)},
+      {"mesh", geometry::mesh("mesh", torus(0.35, 0.15), place)},
+      {"height_field", geometry::height_field("height_field", 6, 0.3, heights, place)},
+      {"plane", geometry::plane(place)},
       {"tube", round_tube(0.8, 0.5, 0.7, place)}};
-  for (const ShapeKind& kind : shape_kinds()) {
+  for (const geometry::ShapeKind& kind : geometry::shape_kinds()) {
     if (std::any_of(all.begin(), all.end(), [&](const auto& s) { return s.name == kind.name; }))
       continue;
     ShapeSpec spec;

@@ -14,18 +14,18 @@ namespace {
 using namespace contact;
 using namespace test;
 
-Shape field(double spacing, int n, const std::function<double(double, double)>& height) {
+geometry::Shape field(double spacing, int n, const std::function<double(double, double)>& height) {
   std::vector<double> z;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
       z.push_back(height(spacing * (i - 0.5 * (n - 1)), spacing * (j - 0.5 * (n - 1))));
-  return height_field("field", n, spacing, z);
+  return geometry::height_field("field", n, spacing, z);
 }
 
 /// @tests{contact-one-gap}
 TEST(SurfaceGap, UsesBothSidesOfAValleyAndIsSmoothAcrossIt) {
-  const Shape valley = field(0.1, 21, [](double x, double) { return 0.5 * std::abs(x); });
-  const Shape ball = sphere("ball", 0.2);
+  const geometry::Shape valley = field(0.1, 21, [](double x, double) { return 0.5 * std::abs(x); });
+  const geometry::Shape ball = geometry::sphere("ball", 0.2);
   const Mat3 upright = Mat3::Identity();
   const auto at = [&](double x, double z) {
     return gap({GapKind::point_surface, 0, 0, Fade::none}, ball, valley,
@@ -58,7 +58,7 @@ TEST(SurfaceGap, LetsBodiesSlideOverFlatTrianglesAsOverThePlane) {
     for (const int kind : {0, 1, 2}) {
       const double way = std::max(0.2, 0.1 * c.speed);
       const int n = static_cast<int>(2.0 * (way + 0.3) / c.cell) + 2;
-      const Shape flat = field(c.cell, n, [](double, double) { return 0.0; });
+      const geometry::Shape flat = field(c.cell, n, [](double, double) { return 0.0; });
       BodyMotion end[2];
       for (const bool plane : {true, false}) {
         Scene s;
@@ -69,7 +69,7 @@ TEST(SurfaceGap, LetsBodiesSlideOverFlatTrianglesAsOverThePlane) {
             : kind == 1
                 ? s.add_box("box", {0.3, 0.2, 0.2}, 1.0, start)
                 : s.add("capsule",
-                        contact::capsule(
+                        geometry::capsule(
                             "capsule", 0.2, 0.2,
                             {Vec3::Zero(), (Mat3() << 0, 0, 1, 0, 1, 0, -1, 0, 0).finished()}),
                         1.0, {0.004, 0.01, 0.01}, start);
@@ -95,7 +95,7 @@ TEST(SurfaceGap, LetsBodiesSlideOverFlatTrianglesAsOverThePlane) {
 }
 
 TEST(SurfaceGap, RefusesToTreatASurfaceAsASolid) {
-  const Shape flat = field(0.1, 5, [](double, double) { return 0.0; });
+  const geometry::Shape flat = field(0.1, 5, [](double, double) { return 0.0; });
   const Mat3 upright = Mat3::Identity();
   const Placement<double> at(Vec3::Zero(), upright, 6);
   EXPECT_THROW(static_cast<void>(point_over_solid(v3(Vec3(0.0, 0.0, 0.2)), 0.0, flat, at)),

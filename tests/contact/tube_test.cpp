@@ -27,9 +27,9 @@ double distance_from(const Vec3& x) {
 }
 
 TEST(Tube, HasRoundSidesForBalls) {
-  const ShapePlace place{{0.3, -0.2, 0.1}, Random(5).frame()};
-  const Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf, place);
-  const Shape ball = sphere("ball", 0.02);
+  const geometry::ShapePlace place{{0.3, -0.2, 0.1}, Random(5).frame()};
+  const geometry::Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf, place);
+  const geometry::Shape ball = geometry::sphere("ball", 0.02);
   const Mat3 upright = Mat3::Identity();
   const Placement<double> at_tube(Vec3::Zero(), upright, 6);
   Random random(7);
@@ -50,8 +50,8 @@ TEST(Tube, HasRoundSidesForBalls) {
 /// Disc at the end of a rod within the tube: it touches the inner side at its point farthest from
 /// the axis.
 TEST(Tube, HasARoundBoreForTheEndsOfRods) {
-  const Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf);
-  const Shape rod = cylinder("rod", 0.2, 0.3);
+  const geometry::Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf);
+  const geometry::Shape rod = cylinder("rod", 0.2, 0.3);
   const Mat3 upright = Mat3::Identity();
   Random random(9);
   for (int k = 0; k < 200; ++k) {
@@ -63,7 +63,7 @@ TEST(Tube, HasARoundBoreForTheEndsOfRods) {
       const Gap<double> g =
           gap({GapKind::part_solid, which, 0, Fade::none}, rod, tube, Placement<double>(r, L, 0),
               Placement<double>(Vec3::Zero(), upright, 6));
-      const Shape part = part_of(rod, which);
+      const geometry::Shape part = part_of(rod, which);
       double farthest = 0.0;
       for (int i = 0; i < 400; ++i)
         for (int j = 0; j <= 40; ++j) {

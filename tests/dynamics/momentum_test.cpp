@@ -16,14 +16,14 @@ constexpr double kMass = 2.5;
 class Momentum : public testing::TestWithParam<double> {
  protected:
   Vec3 p(double t) const { return linear_momentum(kMass, motion_.velocities(t).r_dot); }
-  Mat3 J(double t) const { return inertia_at(motion_.pose(t).Lambda, J_r_); }
+  Mat3 J(double t) const { return geometry::inertia_at(motion_.pose(t).Lambda, J_r_); }
   Vec3 h(double t) const { return angular_momentum(J(t), motion_.velocities(t).omega); }
   double energy(double t) const {
     return kinetic_energy(kMass, J(t), motion_.velocities(t).r_dot, motion_.velocities(t).omega);
   }
 
   test::KnownMotion motion_;
-  Mat3 J_r_ = inertia_at(exp_map(Vec3(0.2, 0.5, -0.4)), Vec3(1.0, 2.0, 2.7).asDiagonal());
+  Mat3 J_r_ = geometry::inertia_at(exp_map(Vec3(0.2, 0.5, -0.4)), Vec3(1.0, 2.0, 2.7).asDiagonal());
   double t_ = GetParam();
 };
 INSTANTIATE_TEST_SUITE_P(Times, Momentum, testing::Values(0.0, 0.37, 1.2));
@@ -60,9 +60,9 @@ TEST_P(Momentum, AboutTheOriginIsThatOfTheBodysPoints) {
     J += kMass / 4.0 * (Z.squaredNorm() * Mat3::Identity() - Z * Z.transpose());
     expected += kMass / 4.0 * point_position(pose, Z).cross(point_velocity(pose, velocities, Z));
   }
-  const Vec3 found =
-      angular_momentum_about_origin(pose.r, linear_momentum(kMass, velocities.r_dot),
-                                    angular_momentum(inertia_at(pose.Lambda, J), velocities.omega));
+  const Vec3 found = angular_momentum_about_origin(
+      pose.r, linear_momentum(kMass, velocities.r_dot),
+      angular_momentum(geometry::inertia_at(pose.Lambda, J), velocities.omega));
   EXPECT_LT((found - expected).norm(), 1e-14);
 }
 

@@ -14,7 +14,8 @@ namespace polhode::theory_forms_tests {
 namespace {
 
 const Vec3 kZ(0.3, -1.1, 0.7);
-const Mat3 kJ_r = inertia_at(exp_map(Vec3(0.2, 0.5, -0.4)), Vec3(1.0, 2.0, 2.7).asDiagonal());
+const Mat3 kJ_r =
+    geometry::inertia_at(exp_map(Vec3(0.2, 0.5, -0.4)), Vec3(1.0, 2.0, 2.7).asDiagonal());
 
 class TheoryForms : public testing::TestWithParam<double> {
  protected:
@@ -28,7 +29,7 @@ class TheoryForms : public testing::TestWithParam<double> {
   double gamma_ = ga_.gamma;
   double dt_ = sample_.context.dt;
   BodyStep step_ = sample_.step();
-  Mat3 J_ = inertia_at(step_.Lambda_n1, kJ_r);  // at t_{n+1}, as all below
+  Mat3 J_ = geometry::inertia_at(step_.Lambda_n1, kJ_r);  // at t_{n+1}, as all below
   Vec3 omega_ = step_.Lambda_n1 * step_.W_n1;
   Vec3 h_ = J_ * omega_;
   Mat3 T_ = cayley_tangent(step_.theta);

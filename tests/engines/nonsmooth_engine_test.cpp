@@ -37,29 +37,6 @@ struct Heap : Scene {
   }
 };
 
-/// @tests{nonsmooth-exit}
-TEST(LeastExitSpeed, NeverAddsEnergyAndLandsInTwoSteps) {
-  for (const double e : {0.0, 0.3, 0.9, 1.0})
-    for (const double w : {-3.0, -1e-3, 0.0, 1e-3, 2.0})
-      for (const double gap : {-1e-3, -1e-9, 0.0, 1e-6, 1e-3, 0.1}) {
-        const double dt = 1e-3, least = least_exit_speed(gap, w, e, dt, 0.02);
-        // p (w_n + w_{n+1})/2 is the work of the contact.
-        EXPECT_LE(w + least, 0.0) << e << ' ' << w << ' ' << gap;
-      }
-  // For any gap at its first impulse, the body is at rest at the surface one step later.
-  for (const double part : {0.51, 0.8, 1.0, 1.3, 1.49}) {
-    const double w = -2.0, dt = 1e-2;
-    double gap = -part * w * dt;
-    const double first = least_exit_speed(gap, w, 0.0, dt, 0.0);
-    ASSERT_GT(first, w);
-    gap += 0.5 * dt * (w + first);
-    EXPECT_GE(gap, 0.0);
-    const double second = least_exit_speed(gap, first, 0.0, dt, 0.0);
-    EXPECT_NEAR(second, 0.0, 1e-12);
-    EXPECT_NEAR(gap + 0.5 * dt * (first + second), 0.0, 1e-15);
-  }
-}
-
 /// @tests{nonsmooth-step}
 TEST(NonsmoothEngine, KeepsTheEnergyOfElasticBounces) {
   for (const double dt : {1e-2, 1e-3}) {
@@ -89,7 +66,7 @@ TEST(NonsmoothEngine, ReboundsWithTheRestitutionOfThePair) {
   Scene s(Vec3::Zero());
   const double restitution[] = {0.0, 0.5, 0.9};
   const int plate = s.contacts->add_material({"plate", 0.0, 1.0});
-  s.contacts->add_shape({kGround, "plate", contact::plane(), plate});
+  s.contacts->add_shape({kGround, "plate", geometry::plane(), plate});
   for (int k = 0; k < 3; ++k) {
     BodyData data;
     data.name = "ball";
@@ -99,7 +76,7 @@ TEST(NonsmoothEngine, ReboundsWithTheRestitutionOfThePair) {
     contact::ContactLaw law;
     law.restitution = restitution[k];
     s.contacts->set_law(material, plate, law);
-    s.contacts->add_shape({body, "ball", contact::sphere("ball", 0.2), material});
+    s.contacts->add_shape({body, "ball", geometry::sphere("ball", 0.2), material});
   }
   s.contacts->set_impulses({});
   s.begin(3e-3);
@@ -215,7 +192,7 @@ TEST(NonsmoothEngine, SlidesOverTheEdgesOfCoplanarTriangles) {
   Scene s;
   const int ball = s.add_ball("ball", 0.1, 1.0, at({-0.93, -0.21, 0.1}, {2.0, 0.7, 0.0}));
   const std::vector<double> heights(21 * 21, 0.0);
-  s.contacts->add_shape({kGround, "ground", contact::height_field("ground", 21, 0.1, heights)});
+  s.contacts->add_shape({kGround, "ground", geometry::height_field("ground", 21, 0.1, heights)});
   s.law(0.0, 0.0);
   s.contacts->set_impulses({});
   s.begin(2e-3);
@@ -228,19 +205,19 @@ TEST(NonsmoothEngine, SlidesOverTheEdgesOfCoplanarTriangles) {
 TEST(NonsmoothEngine, SupportsEveryShapeOnAPlate) {
   Scene s;
   std::vector<int> bodies;
-  const auto drop = [&](const std::string& name, const contact::Shape& shape, double x) {
+  const auto drop = [&](const std::string& name, const geometry::Shape& shape, double x) {
     BodyMotion start = at({x, 0.0, 0.24});
     bodies.push_back(s.add(name, shape, 1.0, Vec3::Constant(2e-3), start));
   };
   const Vec3 corners[] = {
       {-0.1, -0.1, -0.1}, {0.1, -0.1, -0.1}, {0.0, 0.12, -0.1}, {0.0, 0.0, 0.1}};
-  drop("capsule", contact::capsule("capsule", 0.2, 0.04), 0.0);
+  drop("capsule", geometry::capsule("capsule", 0.2, 0.04), 0.0);
   drop("cylinder", contact::cylinder("cylinder", 0.2, 0.24), 0.6);
   drop("cone", contact::cone("cone", 0.2, 0.24), 1.2);
   drop("ellipsoid", contact::ellipsoid("ellipsoid", {0.3, 0.3, 0.2}), 1.8);
-  drop("hull", contact::hull("hull", corners), 2.4);
-  drop("box", contact::box("box", {0.2, 0.2, 0.2}), 3.0);
-  s.contacts->add_shape({kGround, "plate", contact::box("plate", {10.0, 2.0, 0.2})});
+  drop("hull", geometry::hull("hull", corners), 2.4);
+  drop("box", geometry::box("box", {0.2, 0.2, 0.2}), 3.0);
+  s.contacts->add_shape({kGround, "plate", geometry::box("plate", {10.0, 2.0, 0.2})});
   s.law(0.5, 0.0);
   s.contacts->set_impulses({300, 1e-6});
   s.begin(2e-3);

@@ -19,10 +19,10 @@ inline void require(bool holds) {
   if (!holds) std::abort();
 }
 
-inline void check_numbers(const Mesh& mesh) {
+inline void check_numbers(const solids::Mesh& mesh) {
   const int nodes = static_cast<int>(mesh.nodes.size());
   const auto exists = [&](int node) { return node >= 0 && node < nodes; };
-  for (const ElementBlock& block : mesh.blocks) {
+  for (const solids::ElementBlock& block : mesh.blocks) {
     require(block.nodes.size() % block.shape().nodes.size() == 0);
     for (int node : block.nodes) require(exists(node));
   }
@@ -33,22 +33,23 @@ inline void check_numbers(const Mesh& mesh) {
   for (const auto& [name, set] : mesh.element_sets)
     for (int element : set) require(element >= 0 && element < elements);
   for (const auto& [name, surface] : mesh.surfaces)
-    for (const FaceBlock& block : surface.blocks) {
+    for (const solids::FaceBlock& block : surface.blocks) {
       require(block.nodes.size() == block.owners.size() * block.shape().nodes.size());
       for (int node : block.nodes) require(exists(node));
       for (int owner : block.owners) require(owner >= -1 && owner < elements);
     }
 }
 
-using Parser = Mesh (*)(const std::string& name, std::string_view bytes);
+using Parser = solids::Mesh (*)(const std::string& name, std::string_view bytes);
 
 inline int read(Parser parse, const std::uint8_t* data, std::size_t size) {
   try {
-    const Mesh mesh = parse("fuzz", std::string_view(reinterpret_cast<const char*>(data), size));
+    const solids::Mesh mesh =
+        parse("fuzz", std::string_view(reinterpret_cast<const char*>(data), size));
     check_numbers(mesh);
-    (void)mesh_faults(mesh);
-    check_numbers(part_of(mesh, {}));
-    (void)boundary(mesh);
+    (void)solids::mesh_faults(mesh);
+    check_numbers(solids::part_of(mesh, {}));
+    (void)solids::boundary(mesh);
   } catch (const InputError& error) {
     require(error.where().starts_with("fuzz") && !error.what_is_wrong().empty() &&
             !error.hint().empty());

@@ -2,5 +2,5 @@
 #include <fuzz/mesh_fuzzer.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return polhode::fuzz::read(polhode::parse_abaqus, data, size);
+  return polhode::fuzz::read(polhode::solids::parse_abaqus, data, size);
 }

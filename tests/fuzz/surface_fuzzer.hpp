@@ -19,13 +19,13 @@ inline void require(bool holds) {
   if (!holds) std::abort();
 }
 
-inline void check_shape(const contact::Shape& shape) {
+inline void check_shape(const geometry::Shape& shape) {
   const int corners = static_cast<int>(shape.corners.size());
   const auto exists = [&](int corner) { return corner >= 0 && corner < corners; };
   for (const Vec3& x : shape.corners) require(x.allFinite());
   for (const auto& triangle : shape.triangles)
     for (const int corner : triangle) require(exists(corner));
-  for (const contact::Shape::Edge& edge : shape.edges) require(exists(edge.i) && exists(edge.j));
+  for (const geometry::Shape::Edge& edge : shape.edges) require(exists(edge.i) && exists(edge.j));
   require(shape.rounding > 0.0 && shape.size > 0.0);
 }
 
@@ -41,14 +41,14 @@ void tolerate(const std::string& where, Use&& use) {
 
 inline int read(const std::string& name, const std::uint8_t* data, std::size_t size) {
   tolerate(name, [&] {
-    const TriangleSurface surface =
-        parse_surface(name, std::string_view(reinterpret_cast<const char*>(data), size));
+    const geometry::TriangleSurface surface =
+        geometry::parse_surface(name, std::string_view(reinterpret_cast<const char*>(data), size));
     const int points = static_cast<int>(surface.points.size());
     for (const auto& triangle : surface.triangles)
       for (const int corner : triangle) require(corner >= 0 && corner < points);
-    (void)edge_report(surface);
-    tolerate(name, [&] { check_shape(contact::mesh(name, surface)); });
-    tolerate(name, [&] { check_shape(contact::hull(name, surface.points)); });
+    (void)geometry::edge_report(surface);
+    tolerate(name, [&] { check_shape(geometry::mesh(name, surface)); });
+    tolerate(name, [&] { check_shape(geometry::hull(name, surface.points)); });
   });
   return 0;
 }

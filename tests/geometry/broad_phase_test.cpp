@@ -9,10 +9,10 @@
 namespace polhode::broad_phase_tests {
 namespace {
 
-using contact::Bounds;
+using geometry::Bounds;
 using Pairs = std::vector<std::pair<int, int>>;
 
-Pairs by_trying_all(const std::vector<Bounds>& boxes) {
+Pairs by_trying_all(const std::vector<geometry::Bounds>& boxes) {
   Pairs pairs;
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i)
     for (int j = i + 1; j < static_cast<int>(boxes.size()); ++j)
@@ -22,8 +22,8 @@ Pairs by_trying_all(const std::vector<Bounds>& boxes) {
   return pairs;
 }
 
-Pairs found(const std::vector<Bounds>& boxes) {
-  contact::BroadPhase broad;
+Pairs found(const std::vector<geometry::Bounds>& boxes) {
+  geometry::BroadPhase broad;
   Pairs pairs;
   broad.find(boxes, pairs);
   std::sort(pairs.begin(), pairs.end());
@@ -31,9 +31,9 @@ Pairs found(const std::vector<Bounds>& boxes) {
   return pairs;
 }
 
-std::vector<Bounds> boxes_in_a_cube(int n, double side, double largest, double ratio) {
+std::vector<geometry::Bounds> boxes_in_a_cube(int n, double side, double largest, double ratio) {
   test::Random random(7);
-  std::vector<Bounds> boxes;
+  std::vector<geometry::Bounds> boxes;
   for (int i = 0; i < n; ++i) {
     const Vec3 centre = random.vector(0.5 * side);
     const double size = largest * std::pow(ratio, -0.5 * (1.0 + random.number()));
@@ -52,7 +52,7 @@ TEST(BroadPhase, AgreesWithTestingAllPairs) {
 
 TEST(BroadPhase, HandlesDistantBoxesAndFlatScenes) {
   auto boxes = boxes_in_a_cube(300, 3.0, 0.5, 2.0);
-  for (Bounds& b : boxes) b.low.z() = -0.1, b.high.z() = 0.1;
+  for (geometry::Bounds& b : boxes) b.low.z() = -0.1, b.high.z() = 0.1;
   boxes.push_back({Vec3::Constant(1e6), Vec3::Constant(1e6 + 1.0)});
   boxes.push_back({Vec3(-1e7, 0, 0), Vec3(-1e7 + 1.0, 1, 1)});
   EXPECT_EQ(found(boxes), by_trying_all(boxes));
@@ -62,7 +62,7 @@ TEST(BroadPhase, HandlesDistantBoxesAndFlatScenes) {
 
 TEST(BroadPhase, GivesTheSameOrderAgain) {
   const auto boxes = boxes_in_a_cube(400, 3.0, 0.5, 4.0);
-  contact::BroadPhase one, other;
+  geometry::BroadPhase one, other;
   Pairs first, second;
   one.find(boxes_in_a_cube(100, 1.0, 0.5, 1.0), first);  // buffers that contain other data
   one.find(boxes, first);

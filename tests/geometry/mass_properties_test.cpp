@@ -17,7 +17,7 @@ const Mat3 kSomeTurn = exp_map(Vec3(0.4, -1.1, 0.7));
 
 std::string message(double mass, const Mat3& inertia) {
   try {
-    check_mass_properties("bodies.arm", mass, inertia);
+    geometry::check_mass_properties("bodies.arm", mass, inertia);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -29,13 +29,13 @@ Mat3 diagonal(double xx, double yy, double zz) { return Vec3(xx, yy, zz).asDiago
 TEST(CheckMassProperties, AcceptsPossibleMassProperties) {
   EXPECT_EQ(message(1.0, diagonal(1.0, 2.0, 2.5)), "");
   EXPECT_EQ(message(1e-9, 1e-18 * diagonal(1.0, 2.0, 2.5)), "");
-  EXPECT_EQ(message(1e9, inertia_at(kSomeTurn, diagonal(1e12, 2e12, 2.5e12))), "");
+  EXPECT_EQ(message(1e9, geometry::inertia_at(kSomeTurn, diagonal(1e12, 2e12, 2.5e12))), "");
 }
 
 TEST(CheckMassProperties, AcceptsAFlatBodyPrintedToSevenDigits) {
   EXPECT_EQ(message(1.0, diagonal(0.08333333, 0.08333333, 0.1666667)), "");
   // The limit J3 = J1 + J2 itself, turned, so that rounding falls on either side of it.
-  EXPECT_EQ(message(1.0, inertia_at(kSomeTurn, diagonal(1.0, 1.0, 2.0))), "");
+  EXPECT_EQ(message(1.0, geometry::inertia_at(kSomeTurn, diagonal(1.0, 1.0, 2.0))), "");
 }
 
 TEST(CheckMassProperties, RefusesAMassThatIsNotPositiveAndFinite) {
@@ -80,8 +80,8 @@ TEST(CheckMassProperties, RemindsOfTheSignOfTheOffDiagonalEntries) {
 }
 
 TEST(PrincipalAxes, RebuildTheTensorFromAscendingMomentsAndARightHandedFrame) {
-  const Mat3 J = inertia_at(kSomeTurn, diagonal(3.0, 1.0, 2.0));
-  const auto [moments, axes] = principal_axes(J);
+  const Mat3 J = geometry::inertia_at(kSomeTurn, diagonal(3.0, 1.0, 2.0));
+  const auto [moments, axes] = geometry::principal_axes(J);
   EXPECT_LT((moments - Vec3(1.0, 2.0, 3.0)).norm(), 1e-14);
   EXPECT_LT((axes * moments.asDiagonal() * axes.transpose() - J).norm(), 1e-14);
   EXPECT_NEAR(axes.determinant(), 1.0, 1e-14);
@@ -99,25 +99,30 @@ TEST(InertiaAt, TurnsWithTheBody) {
     }
     return J;
   };
-  EXPECT_LT((inertia_at(kSomeTurn, tensor(Mat3::Identity())) - tensor(kSomeTurn)).norm(), 1e-14);
+  EXPECT_LT((geometry::inertia_at(kSomeTurn, tensor(Mat3::Identity())) - tensor(kSomeTurn)).norm(),
+            1e-14);
 }
 
 TEST(InertiaAbout, OfARodAboutItsEndIsAThirdOfMassTimesLengthSquared) {
-  const MassProperties rod{.mass = 3.0, .com = {1.0, 0.0, 0.0}, .inertia = diagonal(0.0, 1.0, 1.0)};
-  EXPECT_LT((inertia_about(rod, Vec3::Zero()) - diagonal(0.0, 4.0, 4.0)).norm(), 1e-14);
-  EXPECT_LT((inertia_about(rod, rod.com) - rod.inertia).norm(), 1e-15);
+  const geometry::MassProperties rod{
+      .mass = 3.0, .com = {1.0, 0.0, 0.0}, .inertia = diagonal(0.0, 1.0, 1.0)};
+  EXPECT_LT((geometry::inertia_about(rod, Vec3::Zero()) - diagonal(0.0, 4.0, 4.0)).norm(), 1e-14);
+  EXPECT_LT((geometry::inertia_about(rod, rod.com) - rod.inertia).norm(), 1e-15);
 }
 
 TEST(Composed, OfTheHalvesOfABoxIsTheBox) {
-  const ShapeKind& box = *find_shape_kind("box");
+  const geometry::ShapeKind& box = *geometry::find_shape_kind("box");
   const double whole_sizes[] = {2.0, 0.6, 0.4};
   const double half_sizes[] = {1.0, 0.6, 0.4};
-  const MassProperties whole = shape_mass_properties("box", box, whole_sizes, 1000.0);
-  const MassProperties half = shape_mass_properties("box", box, half_sizes, 1000.0);
+  const geometry::MassProperties whole =
+      geometry::shape_mass_properties("box", box, whole_sizes, 1000.0);
+  const geometry::MassProperties half =
+      geometry::shape_mass_properties("box", box, half_sizes, 1000.0);
   const Vec3 p(0.3, -0.2, 5.0);
-  const MassProperties parts[] = {placed(half, p + Vec3(-0.5, 0.0, 0.0), Mat3::Identity()),
-                                  placed(half, p + Vec3(0.5, 0.0, 0.0), Mat3::Identity())};
-  const MassProperties sum = composed(parts);
+  const geometry::MassProperties parts[] = {
+      geometry::placed(half, p + Vec3(-0.5, 0.0, 0.0), Mat3::Identity()),
+      geometry::placed(half, p + Vec3(0.5, 0.0, 0.0), Mat3::Identity())};
+  const geometry::MassProperties sum = geometry::composed(parts);
   EXPECT_NEAR(sum.mass, whole.mass, 1e-12 * whole.mass);
   EXPECT_LT((sum.com - p).norm(), 1e-14);
   // The parallel-axes terms are at most 26 m² times the mass; rounding of those.
@@ -125,24 +130,26 @@ TEST(Composed, OfTheHalvesOfABoxIsTheBox) {
 }
 
 TEST(Composed, DoesNotDependOnTheGrouping) {
-  const MassProperties a{.mass = 1.0, .com = {1, 2, 3}, .inertia = diagonal(1, 2, 2.5)};
-  const MassProperties b{.mass = 4.0, .com = {0, -2, 1}, .inertia = diagonal(3, 2, 2.5)};
-  const MassProperties c{.mass = 0.5, .com = {-1, 1, 0}, .inertia = diagonal(0.1, 0.2, 0.2)};
-  const MassProperties ab = composed(std::array{a, b});
-  const MassProperties bc = composed(std::array{b, c});
-  const MassProperties left = composed(std::array{ab, c});
-  const MassProperties right = composed(std::array{a, bc});
+  const geometry::MassProperties a{.mass = 1.0, .com = {1, 2, 3}, .inertia = diagonal(1, 2, 2.5)};
+  const geometry::MassProperties b{.mass = 4.0, .com = {0, -2, 1}, .inertia = diagonal(3, 2, 2.5)};
+  const geometry::MassProperties c{
+      .mass = 0.5, .com = {-1, 1, 0}, .inertia = diagonal(0.1, 0.2, 0.2)};
+  const geometry::MassProperties ab = geometry::composed(std::array{a, b});
+  const geometry::MassProperties bc = geometry::composed(std::array{b, c});
+  const geometry::MassProperties left = geometry::composed(std::array{ab, c});
+  const geometry::MassProperties right = geometry::composed(std::array{a, bc});
   EXPECT_LT((left.com - right.com).norm(), 1e-14);
   EXPECT_LT((left.inertia - right.inertia).norm(), 1e-13);
 }
 
 TEST(Composed, CommutesWithPlacing) {
-  const MassProperties a{.mass = 1.0, .com = {1, 2, 3}, .inertia = diagonal(1, 2, 2.5)};
-  const MassProperties b{.mass = 4.0, .com = {0, -2, 1}, .inertia = diagonal(3, 2, 2.5)};
+  const geometry::MassProperties a{.mass = 1.0, .com = {1, 2, 3}, .inertia = diagonal(1, 2, 2.5)};
+  const geometry::MassProperties b{.mass = 4.0, .com = {0, -2, 1}, .inertia = diagonal(3, 2, 2.5)};
   const Vec3 p(0.1, 0.2, -0.7);
-  const MassProperties first = placed(composed(std::array{a, b}), p, kSomeTurn);
-  const MassProperties last =
-      composed(std::array{placed(a, p, kSomeTurn), placed(b, p, kSomeTurn)});
+  const geometry::MassProperties first =
+      geometry::placed(geometry::composed(std::array{a, b}), p, kSomeTurn);
+  const geometry::MassProperties last = geometry::composed(
+      std::array{geometry::placed(a, p, kSomeTurn), geometry::placed(b, p, kSomeTurn)});
   EXPECT_LT((first.com - last.com).norm(), 1e-14);
   EXPECT_LT((first.inertia - last.inertia).norm(), 1e-13);
 }
@@ -151,13 +158,14 @@ TEST(Composed, TreatsAPartOfNegativeMassAsAHole) {
   const std::array tube_sizes = {0.3, 0.2, 1.0};
   const std::array outer_sizes = {0.3, 1.0};
   const std::array inner_sizes = {0.2, 1.0};
-  const ShapeKind& cylinder = *find_shape_kind("cylinder");
-  MassProperties hole = cylinder.unit_mass_properties(inner_sizes);
+  const geometry::ShapeKind& cylinder = *geometry::find_shape_kind("cylinder");
+  geometry::MassProperties hole = cylinder.unit_mass_properties(inner_sizes);
   hole.mass = -hole.mass;
   hole.inertia = -hole.inertia;
-  const MassProperties tube = find_shape_kind("tube")->unit_mass_properties(tube_sizes);
-  const MassProperties bored =
-      composed(std::array{cylinder.unit_mass_properties(outer_sizes), hole});
+  const geometry::MassProperties tube =
+      geometry::find_shape_kind("tube")->unit_mass_properties(tube_sizes);
+  const geometry::MassProperties bored =
+      geometry::composed(std::array{cylinder.unit_mass_properties(outer_sizes), hole});
   EXPECT_NEAR(bored.mass, tube.mass, 1e-15);
   EXPECT_LT((bored.inertia - tube.inertia).norm(), 1e-15);
 }

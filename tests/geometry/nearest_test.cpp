@@ -13,7 +13,7 @@ using polhode::test::Random;
 
 /// Checks that the root gives a point of the ellipsoid whose normal passes through y.
 void expect_nearest(const Vec3& half, const Vec3& y) {
-  const double t = nearest_on_ellipsoid(half, y);
+  const double t = geometry::nearest_on_ellipsoid(half, y);
   const Vec3 square = half.cwiseAbs2(), share = y.cwiseQuotient((square.array() + t).matrix());
   const Vec3 nearest = square.cwiseProduct(share);
   const double on = nearest.cwiseQuotient(half).squaredNorm();

@@ -16,16 +16,16 @@
 namespace polhode::read_surface_tests {
 namespace {
 
-TriangleSurface box() {
+geometry::TriangleSurface box() {
   const double sizes[] = {2.0, 1.0, 0.5};
-  return shape_surface(*find_shape_kind("box"), sizes);
+  return geometry::shape_surface(*geometry::find_shape_kind("box"), sizes);
 }
 
-const Vec3& corner(const TriangleSurface& surface, int index) {
+const Vec3& corner(const geometry::TriangleSurface& surface, int index) {
   return surface.points[static_cast<std::size_t>(index)];
 }
 
-std::string text_stl(const TriangleSurface& surface) {
+std::string text_stl(const geometry::TriangleSurface& surface) {
   std::string text = "solid box\n";
   for (const auto& triangle : surface.triangles) {
     text += "  facet normal 0 0 0\n    outer loop\n";
@@ -42,7 +42,7 @@ void append(std::string& bytes, std::uint32_t word) {
   for (int i = 0; i < 4; ++i) bytes += static_cast<char>((word >> (8 * i)) & 0xffU);
 }
 
-std::string binary_stl(const TriangleSurface& surface) {
+std::string binary_stl(const geometry::TriangleSurface& surface) {
   std::string bytes = "solid that is binary all the same";
   bytes.resize(80, ' ');
   append(bytes, static_cast<std::uint32_t>(surface.triangles.size()));
@@ -58,35 +58,37 @@ std::string binary_stl(const TriangleSurface& surface) {
 
 std::string refusal(const std::string& name, const std::string& bytes) {
   try {
-    (void)parse_surface(name, bytes);
+    (void)geometry::parse_surface(name, bytes);
   } catch (const InputError& e) {
     return e.what();
   }
   return "";
 }
 
-void expect_box(const TriangleSurface& surface, const Vec3& centre) {
+void expect_box(const geometry::TriangleSurface& surface, const Vec3& centre) {
   EXPECT_EQ(surface.points.size(), 8U);
   EXPECT_EQ(surface.triangles.size(), 12U);
-  EXPECT_NO_THROW(check_closed("box", surface));
-  const MassProperties found = mass_properties(surface, 1.0);
-  const MassProperties expected = mass_properties(box(), 1.0);
+  EXPECT_NO_THROW(geometry::check_closed("box", surface));
+  const geometry::MassProperties found = geometry::mass_properties(surface, 1.0);
+  const geometry::MassProperties expected = geometry::mass_properties(box(), 1.0);
   EXPECT_NEAR(found.mass, 1.0, 1e-14);
   EXPECT_LT((found.com - centre).norm(), 1e-14);
   EXPECT_LT((found.inertia - expected.inertia).norm(), 1e-14);
 }
 
-TEST(ReadStl, ReadsTheTextForm) { expect_box(parse_surface("a.stl", text_stl(box())), {0, 0, 1}); }
+TEST(ReadStl, ReadsTheTextForm) {
+  expect_box(geometry::parse_surface("a.stl", text_stl(box())), {0, 0, 1});
+}
 
 TEST(ReadStl, ReadsTheBinaryFormThatBeginsWithSolid) {
-  expect_box(parse_surface("a.STL", binary_stl(box())), {0, 0, 0});
+  expect_box(geometry::parse_surface("a.STL", binary_stl(box())), {0, 0, 0});
 }
 
 TEST(ReadStl, ReadsLineEndingsOfEverySystem) {
   std::string text = text_stl(box());
   for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2)
     text.replace(i, 1, "\r\n");
-  expect_box(parse_surface("a.stl", text), {0, 0, 1});
+  expect_box(geometry::parse_surface("a.stl", text), {0, 0, 1});
 }
 
 TEST(ReadStl, RefusesATextCutShort) {
@@ -154,7 +156,7 @@ TEST(ReadObj, ReadsFacesInEveryForm) {
       "v -1 -0.5 0.25 1.0\nv 1 -0.5 0.25\nv 1 0.5 0.25\nv -1 0.5 0.25\nvn 0 0 1\nvt 0 0\n"
       "f 1 4 3 2\nf 5/1 6/1 7/1 8/1\nf 1//1 2//1 6//1 5//1\nf 2/1/1 3/1/1 7/1/1 6/1/1 # side\n"
       "f -6 -5 -1 -2\nf 1 5 \\\n  8 4\n";
-  expect_box(parse_surface("box.obj", text), {0, 0, 0});
+  expect_box(geometry::parse_surface("box.obj", text), {0, 0, 0});
 }
 
 TEST(ReadObj, IsExactForAFaceThatIsNotConvex) {
@@ -164,7 +166,8 @@ TEST(ReadObj, IsExactForAFaceThatIsNotConvex) {
       "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
       "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\n"
       "f 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
-  const MassProperties found = mass_properties(parse_surface("l.obj", text), 1.0);
+  const geometry::MassProperties found =
+      geometry::mass_properties(geometry::parse_surface("l.obj", text), 1.0);
   EXPECT_NEAR(found.mass, 3.0, 1e-14);
   EXPECT_LT((found.com - Vec3(2.5 / 3.0, 2.5 / 3.0, 0.5)).norm(), 1e-14);
 }
@@ -198,10 +201,10 @@ TEST(ReadSurface, RefusesOtherFormats) {
 TEST(ReadSurface, ReadsAFileAndNamesOneThatIsMissing) {
   const std::string path = testing::TempDir() + "polhode_read_surface_test.stl";
   std::ofstream(path, std::ios::binary) << binary_stl(box());
-  expect_box(read_surface(path), {0, 0, 0});
+  expect_box(geometry::read_surface(path), {0, 0, 0});
   std::filesystem::remove(path);
   try {
-    (void)read_surface(path);
+    (void)geometry::read_surface(path);
     FAIL() << "a missing file was read";
   } catch (const InputError& e) {
     EXPECT_EQ(e.where(), path);
@@ -212,7 +215,7 @@ TEST(ReadSurface, ReadsAFileAndNamesOneThatIsMissing) {
 TEST(ReadSurface, RefusesADirectory) {
   const std::string path = testing::TempDir() + "polhode_directory.stl";
   std::filesystem::create_directory(path);
-  EXPECT_THROW((void)read_surface(path), InputError);
+  EXPECT_THROW((void)geometry::read_surface(path), InputError);
   std::filesystem::remove(path);
 }
 

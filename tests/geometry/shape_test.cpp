@@ -30,14 +30,15 @@ std::string refusal(Make&& make) {
 }
 
 TEST(MeshShape, LeavesOutPointsThatNoTriangleUses) {
-  const Shape cube = mesh("cube", parse_surface("cube.obj", kCube));
-  const Shape more = mesh("cube", parse_surface(
-                                      "cube.obj", "v 7 7 7\n" + [] {
-                                        std::string text = kCube;  // every number one higher
-                                        for (std::size_t i = text.find('f'); i < text.size(); ++i)
-                                          if (text[i] >= '1' && text[i] <= '8') ++text[i];
-                                        return text;
-                                      }()));
+  const geometry::Shape cube = geometry::mesh("cube", geometry::parse_surface("cube.obj", kCube));
+  const geometry::Shape more =
+      geometry::mesh("cube", geometry::parse_surface(
+                                 "cube.obj", "v 7 7 7\n" + [] {
+                                   std::string text = kCube;  // every number one higher
+                                   for (std::size_t i = text.find('f'); i < text.size(); ++i)
+                                     if (text[i] >= '1' && text[i] <= '8') ++text[i];
+                                   return text;
+                                 }()));
   ASSERT_EQ(more.corners.size(), 8U);
   EXPECT_EQ(more.bound_radius, cube.bound_radius);
   for (const Vec3& x : more.corners) EXPECT_TRUE(x.allFinite());
@@ -50,24 +51,24 @@ TEST(MeshShape, RefusesTrianglesWithoutArea) {
     if (text[i] >= '1' && text[i] <= '8') ++text[i];
   text.replace(text.find("f 2 4 5 3"), 9, "f 2 4 5 3 1");
   text.replace(text.find("f 2 3 7 6"), 9, "f 1 3 7 6 2");
-  const TriangleSurface surface = parse_surface("cube.obj", text);
-  ASSERT_TRUE(edge_report(surface).closed()) << edge_report(surface).first;
-  EXPECT_EQ(refusal([&] { return mesh("cube.obj", surface); }),
+  const geometry::TriangleSurface surface = geometry::parse_surface("cube.obj", text);
+  ASSERT_TRUE(geometry::edge_report(surface).closed()) << geometry::edge_report(surface).first;
+  EXPECT_EQ(refusal([&] { return geometry::mesh("cube.obj", surface); }),
             "cube.obj: the triangle at (0, 0, 0) m has no area: its corners lie on a line. Let the "
             "program that made it remove degenerate triangles, or set contact: {touches: false}.");
 }
 
 TEST(MeshShape, RefusesImplausibleSizes) {
-  TriangleSurface surface = parse_surface("cube.obj", kCube);
+  geometry::TriangleSurface surface = geometry::parse_surface("cube.obj", kCube);
   for (Vec3& x : surface.points) x *= 1e200;
-  EXPECT_EQ(refusal([&] { return mesh("cube.obj", surface); }),
+  EXPECT_EQ(refusal([&] { return geometry::mesh("cube.obj", surface); }),
             "cube.obj: its points are up to 1e+200 m apart. Check its unit of length, or give a "
             "scale.");
 }
 
 TEST(HullShape, RefusesPointsAlmostInAPlane) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 4e-10}};
-  EXPECT_EQ(refusal([&] { return hull("tray", points); }),
+  EXPECT_EQ(refusal([&] { return geometry::hull("tray", points); }),
             "tray: the points lie almost in a plane, so their hull has no volume. Give points that "
             "do not lie in one plane.");
 }
@@ -82,10 +83,11 @@ TEST(SurfaceFiles, FoundByFuzzersAreReadOrRefused) {
     ++count;
     std::ifstream file(name, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    const TriangleSurface surface = parse_surface(name, bytes);
+    const geometry::TriangleSurface surface = geometry::parse_surface(name, bytes);
     for (const bool convex : {false, true}) {
       try {
-        const Shape shape = convex ? hull(name, surface.points) : mesh(name, surface);
+        const geometry::Shape shape =
+            convex ? geometry::hull(name, surface.points) : geometry::mesh(name, surface);
         EXPECT_GT(shape.rounding, 0.0) << name;
         for (const Vec3& x : shape.corners) EXPECT_TRUE(x.allFinite()) << name;
       } catch (const InputError& e) {

@@ -16,27 +16,29 @@ namespace {
 
 class EveryShape : public testing::TestWithParam<const char*> {
  protected:
-  const ShapeKind& kind_ = *find_shape_kind(GetParam());
+  const geometry::ShapeKind& kind_ = *geometry::find_shape_kind(GetParam());
   /// Different sizes, so that an exchange of two is detected.
   const std::vector<double> sizes_ = test::fitting_sizes(kind_, {0.5, 1.2, 0.9});
-  const MassProperties exact_ = shape_mass_properties("shape", kind_, sizes_, 1.0);
+  const geometry::MassProperties exact_ =
+      geometry::shape_mass_properties("shape", kind_, sizes_, 1.0);
 
   /// Relative error of the inertia of the triangulated shape.
   double surface_error(int segments) const {
-    const MassProperties found = mass_properties(shape_surface(kind_, sizes_, segments), 1.0);
+    const geometry::MassProperties found =
+        geometry::mass_properties(geometry::shape_surface(kind_, sizes_, segments), 1.0);
     return (found.inertia - exact_.inertia).norm() / exact_.inertia.norm();
   }
 };
 
 TEST_P(EveryShape, HasPossibleMassProperties) {
-  EXPECT_NO_THROW(check_mass_properties("shape", exact_.mass, exact_.inertia));
+  EXPECT_NO_THROW(geometry::check_mass_properties("shape", exact_.mass, exact_.inertia));
 }
 
 TEST_P(EveryShape, HasAClosedOutwardSurface) {
   for (int segments : {3, 4, 7, 32}) {
-    const TriangleSurface surface = shape_surface(kind_, sizes_, segments);
-    EXPECT_NO_THROW(check_closed("surface", surface)) << segments << " segments";
-    EXPECT_GT(signed_volume(surface), 0.0);
+    const geometry::TriangleSurface surface = geometry::shape_surface(kind_, sizes_, segments);
+    EXPECT_NO_THROW(geometry::check_closed("surface", surface)) << segments << " segments";
+    EXPECT_GT(geometry::signed_volume(surface), 0.0);
   }
 }
 
@@ -53,7 +55,8 @@ TEST_P(EveryShape, HasASurfaceWhoseMassPropertiesConvergeToTheClosedForms) {
 }
 
 TEST_P(EveryShape, HasItsOriginAtTheCentroid) {
-  const MassProperties found = mass_properties(shape_surface(kind_, sizes_, 64), 1.0);
+  const geometry::MassProperties found =
+      geometry::mass_properties(geometry::shape_surface(kind_, sizes_, 64), 1.0);
   EXPECT_LT(found.com.norm(), 1e-14);
   EXPECT_EQ(exact_.com, Vec3::Zero());
 }
@@ -61,7 +64,8 @@ TEST_P(EveryShape, HasItsOriginAtTheCentroid) {
 TEST_P(EveryShape, ScalesWithDensityAndTheFifthPowerOfLength) {
   std::vector<double> doubled = sizes_;
   for (double& size : doubled) size *= 2.0;
-  const MassProperties large = shape_mass_properties("shape", kind_, doubled, 3.0);
+  const geometry::MassProperties large =
+      geometry::shape_mass_properties("shape", kind_, doubled, 3.0);
   EXPECT_NEAR(large.mass, 24.0 * exact_.mass, 1e-14 * large.mass);
   EXPECT_LT((large.inertia - 96.0 * exact_.inertia).norm(), 1e-14 * large.inertia.norm());
 }
@@ -70,21 +74,22 @@ TEST_P(EveryShape, RefusesSizesThatAreNotPositive) {
   for (std::size_t i = 0; i < sizes_.size(); ++i) {
     std::vector<double> wrong = sizes_;
     wrong[i] = i == 0 ? -1.0 : 0.0;
-    EXPECT_THROW(check_shape_sizes("shape", kind_, wrong), InputError);
+    EXPECT_THROW(geometry::check_shape_sizes("shape", kind_, wrong), InputError);
   }
-  EXPECT_THROW(check_shape_sizes("shape", kind_, std::vector<double>(4, 1.0)), InputError);
+  EXPECT_THROW(geometry::check_shape_sizes("shape", kind_, std::vector<double>(4, 1.0)),
+               InputError);
 }
 
 std::vector<const char*> names() {
   std::vector<const char*> all;
-  for (const ShapeKind& kind : shape_kinds()) all.push_back(kind.name.c_str());
+  for (const geometry::ShapeKind& kind : geometry::shape_kinds()) all.push_back(kind.name.c_str());
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(names()),
                          [](const auto& shape) { return std::string(shape.param); });
 
-MassProperties of(const char* name, const std::vector<double>& sizes) {
-  return shape_mass_properties(name, *find_shape_kind(name), sizes, 1.0);
+geometry::MassProperties of(const char* name, const std::vector<double>& sizes) {
+  return geometry::shape_mass_properties(name, *geometry::find_shape_kind(name), sizes, 1.0);
 }
 
 TEST(Shapes, TakeDiametersAndTotalLengths) {
@@ -97,15 +102,15 @@ TEST(Shapes, TakeDiametersAndTotalLengths) {
 }
 
 TEST(Shapes, AgreeWhereOneKindBecomesAnother) {
-  const MassProperties ball = of("sphere", {0.7});
-  const MassProperties capsule = of("capsule", {0.7, 0.7});
-  const MassProperties ellipsoid = of("ellipsoid", {0.7, 0.7, 0.7});
+  const geometry::MassProperties ball = of("sphere", {0.7});
+  const geometry::MassProperties capsule = of("capsule", {0.7, 0.7});
+  const geometry::MassProperties ellipsoid = of("ellipsoid", {0.7, 0.7, 0.7});
   EXPECT_NEAR(capsule.mass, ball.mass, 1e-15);
   EXPECT_LT((capsule.inertia - ball.inertia).norm(), 1e-16);
   EXPECT_LT((ellipsoid.inertia - ball.inertia).norm(), 1e-16);
   // 2/5 m r² of the ball, m r² of a thin hoop about its axis.
   EXPECT_NEAR(ball.inertia(2, 2), 0.4 * ball.mass * 0.35 * 0.35, 1e-16);
-  const MassProperties hoop = of("tube", {2.0, 2.0 - 1e-9, 1e-3});
+  const geometry::MassProperties hoop = of("tube", {2.0, 2.0 - 1e-9, 1e-3});
   EXPECT_NEAR(hoop.inertia(2, 2) / hoop.mass, 1.0, 2e-9);
 }
 
@@ -113,7 +118,8 @@ TEST(Shapes, ReportInconsistentSizes) {
   const auto message = [](const char* name, const std::vector<double>& sizes,
                           double density = 1.0) {
     try {
-      (void)shape_mass_properties("bodies.arm.shape", *find_shape_kind(name), sizes, density);
+      (void)geometry::shape_mass_properties("bodies.arm.shape", *geometry::find_shape_kind(name),
+                                            sizes, density);
     } catch (const InputError& e) {
       return std::string(e.what());
     }
@@ -137,8 +143,8 @@ TEST(Shapes, ReportInconsistentSizes) {
 }
 
 TEST(Shapes, AreFoundByName) {
-  EXPECT_EQ(find_shape_kind("cube"), nullptr);
-  EXPECT_EQ(find_shape_kind("cone")->name, "cone");
+  EXPECT_EQ(geometry::find_shape_kind("cube"), nullptr);
+  EXPECT_EQ(geometry::find_shape_kind("cone")->name, "cone");
 }
 
 }  // namespace

@@ -12,19 +12,19 @@
 namespace polhode::triangle_surface_tests {
 namespace {
 
-TriangleSurface tetrahedron() {
+geometry::TriangleSurface tetrahedron() {
   return {.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
           .triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
-TriangleSurface box() {
+geometry::TriangleSurface box() {
   const double sizes[] = {2.0, 1.0, 0.5};
-  return shape_surface(*find_shape_kind("box"), sizes);
+  return geometry::shape_surface(*geometry::find_shape_kind("box"), sizes);
 }
 
-std::string refusal(const TriangleSurface& surface) {
+std::string refusal(const geometry::TriangleSurface& surface) {
   try {
-    check_closed("part.stl", surface);
+    geometry::check_closed("part.stl", surface);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -33,7 +33,7 @@ std::string refusal(const TriangleSurface& surface) {
 
 TEST(SurfaceMassProperties, OfTheCornerTetrahedronAreItsClosedForms) {
   // ∫ x² = 1/60 and ∫ xy = 1/120 over the tetrahedron of the unit axes, V = 1/6, centroid 1/4.
-  const MassProperties found = mass_properties(tetrahedron(), 6.0);
+  const geometry::MassProperties found = geometry::mass_properties(tetrahedron(), 6.0);
   EXPECT_NEAR(found.mass, 1.0, 1e-15);
   EXPECT_LT((found.com - Vec3::Constant(0.25)).norm(), 1e-15);
   const double central_square = 6.0 / 60.0 - 1.0 / 16.0;
@@ -46,10 +46,11 @@ TEST(SurfaceMassProperties, OfTheCornerTetrahedronAreItsClosedForms) {
 TEST(SurfaceMassProperties, TransformWithTheMotionOfTheSurface) {
   const Mat3 R = exp_map(Vec3(0.7, -0.4, 1.3));
   const Vec3 p(1e3, -2e3, 5e2);  // far away, to test cancellation in the parallel-axes terms
-  TriangleSurface moved = tetrahedron();
+  geometry::TriangleSurface moved = tetrahedron();
   for (Vec3& x : moved.points) x = p + R * x;
-  const MassProperties expected = placed(mass_properties(tetrahedron(), 6.0), p, R);
-  const MassProperties found = mass_properties(moved, 6.0);
+  const geometry::MassProperties expected =
+      geometry::placed(geometry::mass_properties(tetrahedron(), 6.0), p, R);
+  const geometry::MassProperties found = geometry::mass_properties(moved, 6.0);
   // Coordinates of 2e3 m are rounded to 2e-13 m.
   EXPECT_NEAR(found.mass, expected.mass, 3e-12);
   EXPECT_LT((found.com - expected.com).norm(), 3e-12);
@@ -57,16 +58,16 @@ TEST(SurfaceMassProperties, TransformWithTheMotionOfTheSurface) {
 }
 
 TEST(SurfaceMassProperties, TreatAnInnerShellThatFacesInwardAsACavity) {
-  TriangleSurface hollow = box();
-  TriangleSurface inner = scaled(box(), 0.5);
+  geometry::TriangleSurface hollow = box();
+  geometry::TriangleSurface inner = geometry::scaled(box(), 0.5);
   const int shift = static_cast<int>(hollow.points.size());
   hollow.points.insert(hollow.points.end(), inner.points.begin(), inner.points.end());
   for (const auto& [a, b, c] : inner.triangles)
     hollow.triangles.push_back({a + shift, c + shift, b + shift});
   EXPECT_EQ(refusal(hollow), "");
   // A share 1/8 of the mass and 1/32 of the inertia is missing.
-  const MassProperties solid = mass_properties(box(), 1.0);
-  const MassProperties found = mass_properties(hollow, 1.0);
+  const geometry::MassProperties solid = geometry::mass_properties(box(), 1.0);
+  const geometry::MassProperties found = geometry::mass_properties(hollow, 1.0);
   EXPECT_NEAR(found.mass, 7.0 / 8.0 * solid.mass, 1e-15);
   EXPECT_LT((found.inertia - 31.0 / 32.0 * solid.inertia).norm(), 1e-15);
 }
@@ -74,7 +75,7 @@ TEST(SurfaceMassProperties, TreatAnInnerShellThatFacesInwardAsACavity) {
 TEST(CheckClosed, AcceptsAClosedSurface) { EXPECT_EQ(refusal(tetrahedron()), ""); }
 
 TEST(CheckClosed, CountsOpenEdgesAndLocatesTheFirst) {
-  TriangleSurface open = tetrahedron();
+  geometry::TriangleSurface open = tetrahedron();
   open.triangles.pop_back();
   EXPECT_EQ(refusal(open),
             "part.stl: the surface is not closed: 3 of its edges belong to one triangle only and 0 "
@@ -83,14 +84,14 @@ TEST(CheckClosed, CountsOpenEdgesAndLocatesTheFirst) {
 }
 
 TEST(CheckClosed, CountsEdgesOfMoreThanTwoTriangles) {
-  TriangleSurface crowded = tetrahedron();
+  geometry::TriangleSurface crowded = tetrahedron();
   crowded.triangles.push_back({0, 1, 3});
-  EXPECT_EQ(edge_report(crowded).crowded, 3);
+  EXPECT_EQ(geometry::edge_report(crowded).crowded, 3);
   EXPECT_NE(refusal(crowded).find("3 to more than two"), std::string::npos);
 }
 
 TEST(CheckClosed, DetectsATriangleOfOppositeOrientation) {
-  TriangleSurface surface = tetrahedron();
+  geometry::TriangleSurface surface = tetrahedron();
   std::swap(surface.triangles[3][0], surface.triangles[3][1]);
   EXPECT_EQ(refusal(surface),
             "part.stl: the triangles are not oriented consistently: at 3 edges neighbours have "
@@ -99,8 +100,8 @@ TEST(CheckClosed, DetectsATriangleOfOppositeOrientation) {
 }
 
 TEST(CheckClosed, RefusesASheetFoldedOntoItself) {
-  const TriangleSurface sheet{.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                              .triangles = {{0, 1, 2}, {0, 2, 1}}};
+  const geometry::TriangleSurface sheet{.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                        .triangles = {{0, 1, 2}, {0, 2, 1}}};
   EXPECT_NE(refusal(sheet).find("encloses no volume (its area is 1 m²)"), std::string::npos);
 }
 
@@ -110,18 +111,18 @@ TEST(CheckClosed, RefusesASurfaceWithoutTriangles) {
 }
 
 TEST(OrientOutward, FlipsOnlySurfacesThatFaceInward) {
-  TriangleSurface inward = tetrahedron();
+  geometry::TriangleSurface inward = tetrahedron();
   for (auto& corners : inward.triangles) std::swap(corners[0], corners[1]);
-  EXPECT_LT(signed_volume(inward), 0.0);
-  EXPECT_TRUE(orient_outward(inward));
-  EXPECT_NEAR(signed_volume(inward), 1.0 / 6.0, 1e-16);
-  EXPECT_FALSE(orient_outward(inward));
+  EXPECT_LT(geometry::signed_volume(inward), 0.0);
+  EXPECT_TRUE(geometry::orient_outward(inward));
+  EXPECT_NEAR(geometry::signed_volume(inward), 1.0 / 6.0, 1e-16);
+  EXPECT_FALSE(geometry::orient_outward(inward));
   EXPECT_EQ(refusal(inward), "");
 }
 
 TEST(JoinEqualPoints, MergesEqualPointsAndDropsCollapsedTriangles) {
-  TriangleSurface soup;
-  const TriangleSurface solid = tetrahedron();
+  geometry::TriangleSurface soup;
+  const geometry::TriangleSurface solid = tetrahedron();
   for (const auto& corners : solid.triangles) {
     const int first = static_cast<int>(soup.points.size());
     for (const int corner : corners)
@@ -130,11 +131,11 @@ TEST(JoinEqualPoints, MergesEqualPointsAndDropsCollapsedTriangles) {
   }
   soup.points.emplace_back(-0.0, 0.0, -0.0);  // equal to the first point
   soup.triangles.push_back({0, 1, 12});
-  join_equal_points(soup);
+  geometry::join_equal_points(soup);
   EXPECT_EQ(soup.points.size(), 4U);
   EXPECT_EQ(soup.triangles.size(), 4U);
   EXPECT_EQ(refusal(soup), "");
-  EXPECT_NEAR(signed_volume(soup), 1.0 / 6.0, 1e-16);
+  EXPECT_NEAR(geometry::signed_volume(soup), 1.0 / 6.0, 1e-16);
 }
 
 }  // namespace

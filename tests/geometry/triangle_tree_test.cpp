@@ -11,11 +11,11 @@
 namespace polhode::test::triangle_tree_tests {
 namespace {
 
-using contact::TriangleTree;
+using geometry::TriangleTree;
 
 TEST(TriangleTree, AgreesWithTestingAllTriangles) {
-  const TriangleSurface ring = torus(0.35, 0.15);
-  const TriangleTree tree(ring.points, ring.triangles);
+  const geometry::TriangleSurface ring = torus(0.35, 0.15);
+  const geometry::TriangleTree tree(ring.points, ring.triangles);
   Random random(5);
   for (int k = 0; k < 300; ++k) {
     const Vec3 x = random.vector(0.8);
@@ -24,7 +24,7 @@ TEST(TriangleTree, AgreesWithTestingAllTriangles) {
     for (int t = 0; t < static_cast<int>(ring.triangles.size()); ++t) {
       const auto& c = ring.triangles[static_cast<std::size_t>(t)];
       const auto at = [&](std::size_t i) { return ring.points[static_cast<std::size_t>(c[i])]; };
-      const double d = (x - contact::nearest_on_triangle(x, at(0), at(1), at(2)).nearest).norm();
+      const double d = (x - geometry::nearest_on_triangle(x, at(0), at(1), at(2)).nearest).norm();
       least = std::min(least, d);
       if (d <= 0.1) near.push_back(t);
     }
@@ -41,16 +41,16 @@ TEST(TriangleTree, AgreesWithTestingAllTriangles) {
 
 TEST(TriangleTree, ComputesTheWindingNumberOfASurface) {
   const double R = 0.35, r = 0.15;
-  const TriangleSurface ring = torus(R, r, 48);
-  const TriangleTree tree(ring.points, ring.triangles);
+  const geometry::TriangleSurface ring = torus(R, r, 48);
+  const geometry::TriangleTree tree(ring.points, ring.triangles);
   // A second ring through the first.
   const int count = static_cast<int>(ring.points.size());
-  TriangleSurface more = ring;
+  geometry::TriangleSurface more = ring;
   const double shift = 0.2;
   for (const Vec3& x : ring.points) more.points.emplace_back(x + shift * Vec3::UnitX());
   for (const auto& t : ring.triangles)
     more.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
-  const TriangleTree both(more.points, more.triangles);
+  const geometry::TriangleTree both(more.points, more.triangles);
   Random random(6);
   const auto depth = [&](const Vec3& x) {  // below zero outside the round ring
     return r - std::hypot(std::hypot(x[0], x[1]) - R, x[2]);

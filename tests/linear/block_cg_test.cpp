@@ -49,7 +49,7 @@ std::vector<ActingPoint> acting(const ManyBodies& c) {
   return points;
 }
 
-void set(BlockCg& cg, const ManyBodies& c) {
+void set(linear::BlockCg& cg, const ManyBodies& c) {
   ASSERT_TRUE(cg.set_bodies(c.blocks));
   std::vector<int> all(c.blocks.size());
   std::iota(all.begin(), all.end(), 0);
@@ -87,7 +87,7 @@ Vec flat(const std::vector<Vec6>& x) {
 TEST(BlockCg, AgreesWithADirectSolver) {
   for (const double stiffness : {0.0, 1.0, 100.0}) {
     const ManyBodies c = many_bodies(40, stiffness, 3);
-    BlockCg cg;
+    linear::BlockCg cg;
     set(cg, c);
     const std::vector<Vec6> rhs = numbers(40, 5);
     std::vector<Vec6> x;
@@ -103,7 +103,7 @@ TEST(BlockCg, AgreesWithADirectSolver) {
 TEST(BlockCg, NeedsOneIterationWhereNoContactsFormALoop) {
   ManyBodies c = many_bodies(40, 1e3, 3);
   const auto solve = [&](const ManyBodies& bodies, double part, int most) {
-    BlockCg cg;
+    linear::BlockCg cg;
     set(cg, bodies);
     const std::vector<Vec6> rhs = numbers(40, 5);
     std::vector<Vec6> x;
@@ -132,7 +132,7 @@ TEST(BlockCg, SolvesWithFrictionThatFollowsNormalForces) {
     s.C = 100.0 * (s.normal * s.normal.transpose() + 0.01 * Mat3::Identity());
     s.friction_slope = 0.5 * 100.0 * along;
   }
-  BlockCg cg;
+  linear::BlockCg cg;
   set(cg, c);
   const std::vector<Vec6> rhs = numbers(40, 5);
   const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
@@ -158,8 +158,8 @@ TEST(BlockCg, SatisfiesRowsAsADirectSolverDoes) {
         s.friction_slope = 3.0 * s.normal.cross(Vec3(number(), number(), number())).normalized();
         s.C = 20.0 * (s.normal * s.normal.transpose() + 0.01 * Mat3::Identity());
       }
-    std::vector<BlockCg::Tie> ties;
-    std::vector<BlockCg::Row> rows;
+    std::vector<linear::BlockCg::Tie> ties;
+    std::vector<linear::BlockCg::Row> rows;
     const std::vector<Vec6> G = numbers(40, 11);
     for (int k = 0; k < 12; ++k) {
       const int a = k % 3 == 0 ? kGround : 2 * k, b = 2 * k + 1;
@@ -174,7 +174,7 @@ TEST(BlockCg, SatisfiesRowsAsADirectSolverDoes) {
     }
     const auto n = 240, m = static_cast<int>(rows.size());
     Eigen::MatrixXd A = assembled(c), KKT = Eigen::MatrixXd::Zero(n + m, n + m);
-    for (const BlockCg::Tie& t : ties) {
+    for (const linear::BlockCg::Tie& t : ties) {
       A.block<6, 6>(6 * t.a, 6 * t.b) += t.K_ab;
       A.block<6, 6>(6 * t.b, 6 * t.a) += t.K_ab.transpose();
     }
@@ -183,7 +183,7 @@ TEST(BlockCg, SatisfiesRowsAsADirectSolverDoes) {
     Vec right(n + m);
     right.head(n) = flat(rhs);
     for (int i = 0; i < m; ++i) {
-      const BlockCg::Row& row = rows[static_cast<std::size_t>(i)];
+      const linear::BlockCg::Row& row = rows[static_cast<std::size_t>(i)];
       if (row.a != kGround) KKT.block<1, 6>(n + i, 6 * row.a) = row.G_a.transpose();
       KKT.block<1, 6>(n + i, 6 * row.b) = row.G_b.transpose();
       right[n + i] = -row.g;
@@ -192,7 +192,7 @@ TEST(BlockCg, SatisfiesRowsAsADirectSolverDoes) {
     KKT.topRightCorner(n, m) = -constraints.transpose();
     const Vec reference = KKT.completeOrthogonalDecomposition().solve(right);
 
-    BlockCg cg;
+    linear::BlockCg cg;
     set(cg, c);
     cg.set_ties(ties);
     ASSERT_TRUE(cg.set_rows(rows));
@@ -220,11 +220,11 @@ TEST(BlockCg, SatisfiesTheRowsOfABodyInAStiffContact) {
                          {0.0, 0.0, -0.1},
                          {0.25, 0.01, 0.1},
                          stiffness * Vec3::UnitZ() * Vec3::UnitZ().transpose()});
-    std::vector<BlockCg::Row> rows;
+    std::vector<linear::BlockCg::Row> rows;
     for (int k = 0; k < 5; ++k)
       rows.push_back({kGround, 0, Vec6::Zero(), Vec6::Unit(k), 1e-3 * (k + 1)});
     const std::vector<Vec6> rhs = numbers(2, 5);
-    BlockCg cg;
+    linear::BlockCg cg;
     set(cg, c);
     cg.set_ties({});
     ASSERT_TRUE(cg.set_rows(rows));
@@ -244,7 +244,7 @@ TEST(BlockCg, ReachesDoublePrecisionByRepeatedSolution) {
     for (Mat6& B : c.blocks) B *= unit;
     for (ContactSpring& s : c.springs) s.C *= unit;
     const Eigen::MatrixXd A = assembled(c);
-    BlockCg cg;
+    linear::BlockCg cg;
     set(cg, c);
     std::vector<Vec6> rhs = numbers(40, 5), x;
     for (Vec6& f : rhs) f *= unit;
@@ -264,7 +264,7 @@ TEST(BlockCg, ReachesDoublePrecisionByRepeatedSolution) {
 
 TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
   const ManyBodies c = many_bodies(60, 50.0, 9);
-  BlockCg cg;
+  linear::BlockCg cg;
   set(cg, c);
   const std::vector<Vec6> rhs = numbers(60, 6);
   const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
@@ -284,7 +284,7 @@ TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
 /// Springs so stiff that masses vanish in single precision.
 TEST(BlockCg, HandlesSpringsOfAnyStiffness) {
   const ManyBodies c = many_bodies(12, 1e12, 7);
-  BlockCg cg;
+  linear::BlockCg cg;
   set(cg, c);
   std::vector<Vec6> x;
   cg.solve(numbers(12, 5), x, 1e-4, 200, 0);
@@ -295,7 +295,7 @@ TEST(BlockCg, HandlesSpringsOfAnyStiffness) {
 TEST(BlockCg, DoesNotMoveBodiesThatAreLeftOut) {
   const ManyBodies c = many_bodies(40, 20.0, 3);
   const std::vector<int> moving{1, 2, 3, 7, 8, 20, 39};
-  BlockCg cg;
+  linear::BlockCg cg;
   ASSERT_TRUE(cg.set_bodies(c.blocks));
   cg.set_springs(acting(c), moving);
   const std::vector<Vec6> rhs = numbers(40, 5);
@@ -317,7 +317,7 @@ TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
   ManyBodies c = many_bodies(7, 0.0, 1);
   c.springs.clear();
   c.blocks[3] *= 5.0;
-  BlockCg cg;
+  linear::BlockCg cg;
   set(cg, c);
   const std::vector<Vec6> rhs = numbers(7, 2);
   std::vector<Vec6> x;
@@ -328,7 +328,7 @@ TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
 TEST(BlockCg, RefusesABlockThatIsNotPositive) {
   ManyBodies c = many_bodies(3, 1.0, 4);
   c.blocks[1] -= 50.0 * Mat6::Identity();
-  BlockCg cg;
+  linear::BlockCg cg;
   EXPECT_FALSE(cg.set_bodies(c.blocks));
 }
 

@@ -12,42 +12,43 @@ namespace {
 
 using test::add_pair;
 
-KktTopology revolute_chain(int n) {
-  KktTopology t;
+linear::KktTopology revolute_chain(int n) {
+  linear::KktTopology t;
   t.bodies = n;
   for (int i = 0; i < n; ++i) add_pair(t, i == 0 ? kGround : i - 1, i, 5);
   return t;
 }
 
 TEST(GatherNodes, GroupsEachBodyWithTheJointToItsParent) {
-  const NodeGraph graph = gather_nodes(revolute_chain(4));
+  const linear::NodeGraph graph = linear::gather_nodes(revolute_chain(4));
   EXPECT_EQ(graph.width, (std::vector<int>{11, 11, 11, 11}));
   EXPECT_EQ(graph.row_node, (std::vector<int>{0, 1, 2, 3}));
 }
 
 TEST(GatherNodes, EliminatesLoopRowsAfterBothBodies) {
-  KktTopology t = revolute_chain(3);
+  linear::KktTopology t = revolute_chain(3);
   add_pair(t, 2, 0, 1);
-  const NodeGraph graph = gather_nodes(t);
+  const linear::NodeGraph graph = linear::gather_nodes(t);
   ASSERT_EQ(graph.width.size(), 4u);
   EXPECT_EQ(graph.width[3], 1);
-  const EliminationOrder order = eliminate_least_degree_first(graph);
+  const linear::EliminationOrder order = linear::eliminate_least_degree_first(graph);
   EXPECT_GT(order.position[3], order.position[0]);
   EXPECT_GT(order.position[3], order.position[2]);
 }
 
 TEST(EliminationOrder, MakesNoFillInATree) {
-  KktTopology t;
+  linear::KktTopology t;
   t.bodies = 63;
   for (int i = 0; i < 63; ++i) add_pair(t, i == 0 ? kGround : (i - 1) / 2, i, 3);
-  const EliminationOrder order = eliminate_least_degree_first(gather_nodes(t));
+  const linear::EliminationOrder order =
+      linear::eliminate_least_degree_first(linear::gather_nodes(t));
   std::size_t edges = 0;
   for (const auto& later : order.later) edges += later.size();
   EXPECT_EQ(edges, 62u);
 }
 
 TEST(BlockLu, CountsWorkInProportionToTheLengthOfAChain) {
-  BlockLu short_chain, long_chain;
+  linear::BlockLu short_chain, long_chain;
   short_chain.analyse(revolute_chain(100));
   long_chain.analyse(revolute_chain(200));
   EXPECT_NEAR(long_chain.factor_flops() / short_chain.factor_flops(), 2.0, 0.02);
@@ -55,13 +56,13 @@ TEST(BlockLu, CountsWorkInProportionToTheLengthOfAChain) {
 
 /// With fused multiply-add the last digits depend on the processor.
 TEST(BlockLu, DoesWithoutFusedMultiplyAddOnRequest) {
-  if (!has_fused_kernels()) GTEST_SKIP() << "this processor has none";
-  KktTopology topology = revolute_chain(20);
+  if (!linear::has_fused_kernels()) GTEST_SKIP() << "this processor has none";
+  linear::KktTopology topology = revolute_chain(20);
   test::Numbers number(3);
-  const KktValues values = test::random_values(topology, number);
+  const linear::KktValues values = test::random_values(topology, number);
   const auto solution = [&](bool fused) {
     topology.fused = fused;
-    BlockLu lu;
+    linear::BlockLu lu;
     lu.analyse(topology);
     EXPECT_TRUE(lu.factor(values));
     Vec x = Vec::LinSpaced(6 * topology.bodies + topology.rows, -1.0, 2.0);

@@ -17,17 +17,17 @@ using test::Numbers;
 
 struct Case {
   const char* name;
-  KktTopology topology;
+  linear::KktTopology topology;
 };
 
-KktTopology bodies(int n) {
-  KktTopology t;
+linear::KktTopology bodies(int n) {
+  linear::KktTopology t;
   t.bodies = n;
   return t;
 }
 
-KktTopology chain(int n, int rows, bool grounded) {
-  KktTopology t = bodies(n);
+linear::KktTopology chain(int n, int rows, bool grounded) {
+  linear::KktTopology t = bodies(n);
   if (grounded) add_pair(t, kGround, 0, rows);
   for (int i = 1; i < n; ++i) add_pair(t, i - 1, i, rows);
   return t;
@@ -39,7 +39,7 @@ std::vector<Case> cases() {
   all.push_back({"revolute chain", chain(9, 5, true)});
   all.push_back({"floating fixed chain", chain(7, 6, false)});
 
-  KktTopology t = chain(6, 5, true);
+  linear::KktTopology t = chain(6, 5, true);
   add_pair(t, 5, kGround, 3);
   add_pair(t, 2, 4, 1);
   all.push_back({"loops", t});
@@ -94,11 +94,11 @@ TEST_P(LinearSolvers, AgreeWithADenseSolution) {
   Numbers number(3);
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const auto solver = make_linear_solver(GetParam());
+    const auto solver = linear::make_linear_solver(GetParam());
     solver->analyse(c.topology);
-    KktMatrix matrix(c.topology);
+    linear::KktMatrix matrix(c.topology);
     for (int repeat = 0; repeat < 3; ++repeat) {  // new values, old symbolic work
-      const KktValues values = test::random_values(c.topology, number);
+      const linear::KktValues values = test::random_values(c.topology, number);
       ASSERT_TRUE(matrix.set(values));
       const Mat A = matrix.dense();
       const Vec b = random_vector(A.rows(), number);
@@ -119,12 +119,12 @@ TEST_P(LinearSolvers, AgreeWithADenseSolution) {
 
 TEST_P(LinearSolvers, SolveAMechanismWithRedundantExactRows) {
   // The same five rows twice: without ε the matrix is singular, with it the multipliers are equal.
-  KktTopology t = bodies(2);
+  linear::KktTopology t = bodies(2);
   add_pair(t, kGround, 0, 5);
   add_pair(t, 0, 1, 5);
   add_pair(t, 0, 1, 5);
   Numbers number(11);
-  KktValues values = test::random_values(t, number);
+  linear::KktValues values = test::random_values(t, number);
   for (Mat6& K : values.diagonal) K = Vec6::LinSpaced(0.5, 2.0).asDiagonal();
   for (auto& v : values.pairs) {
     v.K_ab.setZero();
@@ -133,7 +133,7 @@ TEST_P(LinearSolvers, SolveAMechanismWithRedundantExactRows) {
     v.B_b = v.G_b.transpose();
   }
   values.pairs[2] = values.pairs[1];
-  const auto solver = make_linear_solver(GetParam());
+  const auto solver = linear::make_linear_solver(GetParam());
   solver->analyse(t);
   ASSERT_TRUE(solver->factor(values));
   Vec x = Vec::Zero(12 + 15);
@@ -149,12 +149,12 @@ TEST_P(LinearSolvers, SolveAMechanismWithRedundantExactRows) {
 }
 
 TEST_P(LinearSolvers, ReportASingularMatrixAndValuesThatAreNotFinite) {
-  const KktTopology t = chain(3, 3, true);
+  const linear::KktTopology t = chain(3, 3, true);
   Numbers number(5);
-  const auto solver = make_linear_solver(GetParam());
+  const auto solver = linear::make_linear_solver(GetParam());
   solver->analyse(t);
-  KktValues values = test::random_values(t, number);
-  const KktValues good = values;
+  linear::KktValues values = test::random_values(t, number);
+  const linear::KktValues good = values;
   values.diagonal[1](2, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solver->factor(values));
   values = good;
@@ -169,13 +169,13 @@ TEST_P(LinearSolvers, ReportASingularMatrixAndValuesThatAreNotFinite) {
 }
 
 TEST_P(LinearSolvers, GiveTheSameBitsEachTime) {
-  const KktTopology t = cases()[3].topology;
+  const linear::KktTopology t = cases()[3].topology;
   Numbers number(5);
-  const KktValues values = test::random_values(t, number);
+  const linear::KktValues values = test::random_values(t, number);
   const Vec b = random_vector(6 * t.bodies + t.rows, number);
   Vec first = b, second = b;
   for (Vec* x : {&first, &second}) {
-    const auto solver = make_linear_solver(GetParam());
+    const auto solver = linear::make_linear_solver(GetParam());
     solver->analyse(t);
     ASSERT_TRUE(solver->factor(values));
     solver->solve(*x);
@@ -184,7 +184,7 @@ TEST_P(LinearSolvers, GiveTheSameBitsEachTime) {
 }
 
 TEST_P(LinearSolvers, HaveTheNameTheyAreMadeBy) {
-  EXPECT_EQ(make_linear_solver(GetParam())->name(), GetParam());
+  EXPECT_EQ(linear::make_linear_solver(GetParam())->name(), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LinearSolvers, testing::Values("block_lu", "klu", "sparse_lu"),
@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(All, LinearSolvers, testing::Values("block_lu", "klu", 
 
 TEST(MakeLinearSolver, ListsTheNamesWhenOneIsUnknown) {
   try {
-    (void)make_linear_solver("cholesky");
+    (void)linear::make_linear_solver("cholesky");
     FAIL() << "accepted";
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),

@@ -13,12 +13,12 @@ namespace polhode::loop_rank_tests {
 namespace {
 
 /// All rows in one dense matrix.
-Mat dense(const std::vector<BodyRows>& rows, int bodies) {
+Mat dense(const std::vector<linear::BodyRows>& rows, int bodies) {
   Eigen::Index count = 0;
-  for (const BodyRows& r : rows) count += r.G.rows();
+  for (const linear::BodyRows& r : rows) count += r.G.rows();
   Mat G = Mat::Zero(count, 6 * bodies);
   count = 0;
-  for (const BodyRows& r : rows) {
+  for (const linear::BodyRows& r : rows) {
     for (std::size_t j = 0; j < r.bodies.size(); ++j)
       G.block(count, 6 * r.bodies[j], r.G.rows(), 6) =
           r.G.middleCols(6 * static_cast<Eigen::Index>(j), 6);
@@ -28,22 +28,22 @@ Mat dense(const std::vector<BodyRows>& rows, int bodies) {
 }
 
 /// Rows between bodies in a ring with chords, some of them combinations of earlier ones.
-std::vector<BodyRows> ring(int bodies, int chords, int copies, std::mt19937& random) {
+std::vector<linear::BodyRows> ring(int bodies, int chords, int copies, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const auto joint = [&](int a, int b, int count) {
-    BodyRows rows{{a, b}, Mat(count, 12)};
+    linear::BodyRows rows{{a, b}, Mat(count, 12)};
     for (double& x : rows.G.reshaped()) x = normal(random);
     rows.G.rowwise().normalize();
     return rows;
   };
-  std::vector<BodyRows> list;
+  std::vector<linear::BodyRows> list;
   for (int b = 0; b < bodies; ++b) list.push_back(joint(b, (b + 1) % bodies, 4));
   for (int k = 0; k < chords; ++k)
     list.push_back(
         joint(k % bodies,
               (k * 7 + 3) % bodies == k % bodies ? (k + 1) % bodies : (k * 7 + 3) % bodies, 2));
   for (int k = 0; k < copies; ++k) {
-    BodyRows again = list[static_cast<std::size_t>(3 * k) % list.size()];
+    linear::BodyRows again = list[static_cast<std::size_t>(3 * k) % list.size()];
     again.G = Mat(again.G.row(0) + 0.5 * again.G.row(1));
     again.G.rowwise().normalize();
     list.push_back(again);
@@ -55,11 +55,11 @@ TEST(LoopRank, IsThatOfSingularValuesAndNamesTheSameRows) {
   std::mt19937 random(7);
   for (const auto& [bodies, chords, copies] :
        {std::array{3, 0, 0}, {5, 2, 1}, {12, 5, 4}, {30, 20, 9}, {20, 40, 0}}) {
-    const std::vector<BodyRows> rows = ring(bodies, chords, copies, random);
+    const std::vector<linear::BodyRows> rows = ring(bodies, chords, copies, random);
     const Mat G = dense(rows, bodies);
     const Eigen::JacobiSVD<Mat> svd(G, Eigen::ComputeFullU);
     const auto rank = (svd.singularValues().array() > 1e-9).count();
-    const LoopRank found = loop_rank(rows, bodies, 1e-9);
+    const linear::LoopRank found = linear::loop_rank(rows, bodies, 1e-9);
     EXPECT_EQ(found.rank, rank) << bodies << " bodies";
     // A row is part of a redundancy if a combination that vanishes has it.
     const Mat null = svd.matrixU().rightCols(G.rows() - rank);
@@ -72,16 +72,16 @@ TEST(LoopRank, IsThatOfSingularValuesAndNamesTheSameRows) {
 
 TEST(LoopRank, ReducesManyRowsOnOneBody) {
   std::mt19937 random(3);
-  std::vector<BodyRows> rows;
+  std::vector<linear::BodyRows> rows;
   for (int k = 0; k < 400; ++k) {
-    BodyRows r{{0}, Mat::Random(1, 6)};
+    linear::BodyRows r{{0}, Mat::Random(1, 6)};
     r.G.rowwise().normalize();
     rows.push_back(r);
   }
-  const LoopRank found = loop_rank(rows, 1, 1e-9);
+  const linear::LoopRank found = linear::loop_rank(rows, 1, 1e-9);
   EXPECT_EQ(found.rank, 6);
   EXPECT_EQ(std::count(found.dependent.begin(), found.dependent.end(), 1), 400);
-  EXPECT_EQ(loop_rank({}, 3, 1e-9).rank, 0);
+  EXPECT_EQ(linear::loop_rank({}, 3, 1e-9).rank, 0);
 }
 
 // One square cell has three redundant rows, a row of cells three each: 10,001 bodies, for which a

@@ -18,25 +18,25 @@ class Numbers {
   std::mt19937 engine_;
 };
 
-inline void add_pair(KktTopology& t, int a, int b, int rows) {
+inline void add_pair(linear::KktTopology& t, int a, int b, int rows) {
   t.pairs.push_back({a, b, rows, t.rows});
   t.rows += rows;
 }
 
 /// Values like those of a mechanism: bodies near the unit matrix, B near Gᵀ, exact rows.
-inline KktValues random_values(const KktTopology& topology, Numbers& number) {
+inline linear::KktValues random_values(const linear::KktTopology& topology, Numbers& number) {
   const auto fill = [&](auto& m, double size) {
     for (int i = 0; i < m.rows(); ++i)
       for (int j = 0; j < m.cols(); ++j) m(i, j) = size * number();
   };
-  KktValues values;
+  linear::KktValues values;
   for (int b = 0; b < topology.bodies; ++b) {
     Mat6 K;
     fill(K, 0.05);
     values.diagonal.push_back(K + Mat6::Identity());
   }
   for (std::size_t p = 0; p < topology.pairs.size(); ++p) {
-    KktValues::Pair v;
+    linear::KktValues::Pair v;
     fill(v.K_ab, 0.05);
     fill(v.K_ba, 0.05);
     fill(v.G_a, 1.0);

@@ -22,31 +22,32 @@ namespace {
 using testing::HasSubstr;
 
 /// A cube of one metre and E = 1 Pa on the ground, pressed on its top.
-void press(System& system, const std::string& element, const MaterialDescription& material,
+void press(System& system, const std::string& element, const solids::MaterialDescription& material,
            double pressure) {
-  const Mesh mesh = make_mesh("cube", "block", {{"size", {1, 1, 1}}, {"cells", {2, 2, 2}}}, "hex8");
+  const solids::Mesh mesh =
+      solids::make_mesh("cube", "block", {{"size", {1, 1, 1}}, {"cells", {2, 2, 2}}}, "hex8");
   for (const Vec3& X : mesh.nodes)
     system.add_node({.position = X, .body = X.z() < -0.5 + 1e-9 ? kGround : kFreeNode});
-  SolidElementsDescription d;
+  solids::SolidElementsDescription d;
   d.name = "solids.cube";
   d.element = element;
-  d.material = make_material("materials.m", material);
+  d.material = solids::make_material("materials.m", material);
   d.density = 1.0;
   d.connectivity = mesh.blocks.at(0).nodes;
   d.X = mesh.nodes;
-  system.add_elements(make_solid_elements(std::move(d)));
-  std::vector<LoadedFaces> top;
-  for (const FaceBlock& block : mesh.surfaces.at("zmax").blocks)
+  system.add_elements(solids::make_solid_elements(std::move(d)));
+  std::vector<solids::LoadedFaces> top;
+  for (const solids::FaceBlock& block : mesh.surfaces.at("zmax").blocks)
     top.push_back({block.type, block.nodes});
   system.add_elements(
-      make_traction("loads.press", top, mesh.nodes, test::constant({0.0, 0.0, -pressure})));
+      solids::make_traction("loads.press", top, mesh.nodes, test::constant({0.0, 0.0, -pressure})));
   system.finish();
 }
 
-const MaterialDescription kFoam{.kind = "neo_hookean",
-                                .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}};
-const MaterialDescription kLinear{.kind = "elastic",
-                                  .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}};
+const solids::MaterialDescription kFoam{
+    .kind = "neo_hookean", .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}};
+const solids::MaterialDescription kLinear{
+    .kind = "elastic", .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}};
 
 /// One step so long that inertia is negligible: at ρ∞ = 0 it ends near equilibrium.
 StepReport one_long_step(const System& system, State& state, double least) {

@@ -14,7 +14,7 @@ namespace polhode::automatic_steps_tests {
 namespace {
 
 Model with(const std::string& text, int order, double tolerance) {
-  Model m = read_model_text(text, "model.yaml");
+  Model m = io::read_model_text(text, "model.yaml");
   m.analysis.order = order;
   m.analysis.tolerance = tolerance;
   return m;

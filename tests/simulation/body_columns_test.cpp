@@ -32,7 +32,7 @@ output: {hdf5: false, probes: {disc: {body: disc, )" +
 }
 
 std::vector<double> at_end(const std::string& probe, std::vector<std::string>* header = nullptr) {
-  Simulation s(read_model_text(text(probe), "columns.yaml"));
+  Simulation s(io::read_model_text(text(probe), "columns.yaml"));
   EXPECT_EQ(s.run().end, RunEnd::finished);
   const ProbeTarget target = probe_target(s, s.model().output.probes[0]);
   if (header) *header = target.header;
@@ -103,7 +103,7 @@ TEST(BodyColumns, ContainHelicalAxes) {
 TEST(BodyColumns, ReportErrors) {
   const auto fault = [](const std::string& probe) -> std::string {
     try {
-      (void)read_model_text(text(probe), "columns.yaml");
+      (void)io::read_model_text(text(probe), "columns.yaml");
     } catch (const std::exception& e) {
       return e.what();
     }

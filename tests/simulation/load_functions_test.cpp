@@ -15,13 +15,13 @@ constexpr double kMass = 2.0, kStiffness = 50.0, kDamping = 3.0, kStart = 0.8;
 
 /// A free body that begins at x = 0.8 m, with a force on it.
 Model free_body(const std::string& step, const std::string& load = "type: force, body: it") {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 bodies: {it: {mass: 2, inertia: [0.1, 0.2, 0.3], position: [0.8, 0, 0]}}
 loads: {push: {)" + load + R"(, force: [0, 0, 0]}}
 analysis: {duration: 1.5, step: )" +
-                             step + "}\noutput: {hdf5: false}\n",
-                         "free_body.yaml", {});
+                                 step + "}\noutput: {hdf5: false}\n",
+                             "free_body.yaml", {});
 }
 
 PointFunction spring(double k, double c, bool with_derivative = false) {
@@ -107,7 +107,7 @@ output: {hdf5: false}
     std::string t = text;
     t.replace(t.find("TWIST"), 5, twist);
     t.replace(t.find("PULL"), 4, pull);
-    return read_model_text(t, "two.yaml", {});
+    return io::read_model_text(t, "two.yaml", {});
   };
   Simulation engine(
       with("{type: torsional_spring, joint: hinge, stiffness: 7, damping: 0.3}",
@@ -168,7 +168,7 @@ TEST(LoadFunctions, ThatThrowLeaveTheSimulationUnchanged) {
 }
 
 TEST(LoadFunctions, HoldAWeightInStatics) {
-  Model model = read_model_text(R"(
+  Model model = io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -10]
 bodies: {it: {mass: 2, inertia: [1, 1, 1]}}
@@ -177,7 +177,7 @@ loads: {hold: {type: linear_motor, joint: rail, force: 0}}
 analysis: {type: statics}
 output: {hdf5: false}
 )",
-                                "hold.yaml", {});
+                                    "hold.yaml", {});
   model.loads[0].of_motion = CoordinateFunction{
       [](const CoordinateReading& z) { return -100.0 * z.value - 1e3 * std::pow(z.value, 3); },
       {},
@@ -205,13 +205,13 @@ TEST(LoadFunctions, AreRefusedWhereTheyHaveNoMeaning) {
             "(PointFunction).");
   model.loads[0].of_motion = PointFunction{};
   EXPECT_EQ(message(model), "loads.push.force: is a function without a value. Set its value.");
-  model = read_model_text(R"(
+  model = io::read_model_text(R"(
 format: 1
 bodies: {it: {mass: 2, inertia: [1, 1, 1]}}
 joints: {hinge: {type: revolute, bodies: [ground, it], at: [0, 0, 0], axis: y}}
 loads: {turn: {type: rotary_motor, joint: hinge, angle: 0}, brake: {type: drag, body: it, linear: 1}}
 )",
-                          "refused.yaml", {});
+                              "refused.yaml", {});
   model.loads[0].of_motion = scalar;
   EXPECT_EQ(
       message(model),
@@ -225,13 +225,13 @@ loads: {turn: {type: rotary_motor, joint: hinge, angle: 0}, brake: {type: drag, 
 
 // Probes of the model's output by name.
 TEST(LoadFunctions, ProbesAreReadByName) {
-  Model model = read_model_text(R"(
+  Model model = io::read_model_text(R"(
 format: 1
 bodies: {it: {mass: 2, inertia: [1, 1, 1], position: [1, 0, 0], velocity: [0, 3, 0]}}
 analysis: {duration: 1, step: 10 ms}
 output: {hdf5: false, probes: {corner: {body: it, point: [0, 0, 0.5]}}}
 )",
-                                "probe.yaml", {});
+                                    "probe.yaml", {});
   Simulation s(std::move(model));
   s.run();
   const std::vector<std::string> columns = s.probe_columns("corner");

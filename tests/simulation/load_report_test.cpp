@@ -100,12 +100,12 @@ TEST(LoadReport, IsRecordedByProbes) {
   m.model.output.probes = {spring, moment};
   m.model.analysis.step = 0.1;
   const Simulation s(m.model);
-  CsvProbes probes(s, scratch / "probes");
+  io::CsvProbes probes(s, scratch / "probes");
   probes.record(s);
   probes.flush();
-  EXPECT_EQ(read_file(scratch / "probes/s.csv"),
+  EXPECT_EQ(io::read_file(scratch / "probes/s.csv"),
             "t [s],fx [N],fy [N],fz [N],length [m],rate [m/s],energy [J]\n0,-0,-0,-3,2,0,1.5\n");
-  EXPECT_EQ(read_file(scratch / "probes/moment.csv"),
+  EXPECT_EQ(io::read_file(scratch / "probes/moment.csv"),
             "t [s],mx [N m],my [N m],mz [N m]\n0,1,2,3\n");
 }
 

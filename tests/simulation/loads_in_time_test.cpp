@@ -15,7 +15,7 @@ namespace {
 
 /// A free ball of 2 kg on which a force along x acts.
 Model pushed_ball(const std::string& force, double duration) {
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 bodies:
   ball: {{mass: 2, inertia: [1, 1, 1], position: [0, 0, 0]}}
@@ -23,8 +23,8 @@ loads:
   push: {{type: force, body: ball, at: [0, 0, 0], force: [{}, 0, 0]}}
 analysis: {{duration: {} s}}
 )",
-                                force, duration),
-                         "ball.yaml");
+                                    force, duration),
+                             "ball.yaml");
 }
 
 struct End {
@@ -119,7 +119,7 @@ TEST(LoadsInTime, PulsesOnSolidsGiveTheirWholeImpulse) {
                              0.2 * 0.1 * 300.0 * 7e-4};
   for (int k = 0; k < 3; ++k)
     for (const bool fixed : {false, true}) {
-      Model m = read_model_text(format(R"(
+      Model m = io::read_model_text(format(R"(
 format: 1
 materials:
   rubber: {{type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
@@ -129,8 +129,8 @@ loads:
   push: {}
 analysis: {{duration: 0.05 s}}
 )",
-                                       kinds[k]),
-                                "block.yaml");
+                                           kinds[k]),
+                                    "block.yaml");
       if (fixed)
         m.analysis.step = 0.01;
       else

@@ -64,7 +64,7 @@ TEST(ProbeColumns, HaveOneUniqueNameAndUnitForEachNumber) {
       EXPECT_EQ(std::count(names.begin(), names.end(), c.name), 0) << probe.name << ' ' << c.name;
       names.push_back(c.name);
       if (c.unit != "SI" && c.unit != "-") {
-        EXPECT_TRUE(read_unit(c.unit).unit) << probe.name << ' ' << c.name << ' ' << c.unit;
+        EXPECT_TRUE(io::read_unit(c.unit).unit) << probe.name << ' ' << c.name << ' ' << c.unit;
       }
     }
   }

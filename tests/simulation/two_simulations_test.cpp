@@ -10,10 +10,10 @@ namespace {
 
 /// A deformable bar that swings on a hinged body.
 Model swing(int cells) {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 variables: {n: )" + std::to_string(cells) +
-                             R"(}
+                                 R"(}
 gravity: [0, 0, -9.81]
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 bodies: {hub: {shape: {box: [0.1, 0.1, 0.1]}, density: 1000, position: [-0.05, 0, 0]}}
@@ -26,12 +26,12 @@ solids:
 joints: {pin: {type: revolute, bodies: [ground, hub], at: [-0.05, 0, 0], axis: y}}
 analysis: {duration: 0.05, step: 0.005}
 )",
-                         "swing.yaml");
+                             "swing.yaml");
 }
 
 /// Three balls in a bowl.
 Model balls() {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 contacts: {default: {friction: 0.3}}
@@ -42,7 +42,7 @@ bodies:
   c: {shape: {box: [0.1, 0.1, 0.1]}, density: 1000, position: [0.02, 0.03, 0.8]}
 analysis: {duration: 0.5, step: 0.002}
 )",
-                         "balls.yaml");
+                             "balls.yaml");
 }
 
 std::string alone(const Model& model) {

@@ -19,7 +19,7 @@ struct Case {
   Stress stress;
 };
 
-int kernel_width() { return element_kernels("automatic").width; }
+int kernel_width() { return solids::element_kernels("automatic").width; }
 
 std::string label_of(const Case& c) {
   return c.element + (c.rho_inf == 1.0 ? "" : "_dissipative") +
@@ -30,7 +30,7 @@ std::string label_of(const Case& c) {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const ElementKind& kind : element_kinds())
+  for (const solids::ElementKind& kind : solids::element_kinds())
     for (const double rho_inf : {1.0, 0.25})
       for (const Stress stress : {Stress::kConserving, Stress::kMidpoint, Stress::kViscous})
         all.push_back({kind.name, rho_inf, stress});
@@ -40,16 +40,16 @@ std::vector<Case> cases() {
 /// One element of one material in a large step.
 struct Example {
   Random random{7};
-  const ElementKind& kind;
+  const solids::ElementKind& kind;
   Case with;
   std::vector<Vec3> X;
-  std::shared_ptr<const Material> material;
-  std::unique_ptr<SolidElements> group;
+  std::shared_ptr<const solids::Material> material;
+  std::unique_ptr<solids::SolidElements> group;
   SolidStep step;
   double force;  ///< Of strains of order one [N].
 
-  Example(const Case& c, const MaterialDescription& d)
-      : kind(element_kind(c.element)),
+  Example(const Case& c, const solids::MaterialDescription& d)
+      : kind(solids::element_kind(c.element)),
         with(c),
         X(distorted_element(kind, random)),
         material(example_material(d, c.stress == Stress::kViscous)),
@@ -64,7 +64,7 @@ struct Example {
     if (kind.sizes().mean_dilatation) step.history[0] = 0.0;
     group->begin_step(step.history.data(), step.scratch.data());
   }
-  [[nodiscard]] std::unique_ptr<SolidElements> make(const std::string& isa) const {
+  [[nodiscard]] std::unique_ptr<solids::SolidElements> make(const std::string& isa) const {
     return one_element(kind, X, material, with.stress != Stress::kMidpoint, isa);
   }
 };
@@ -73,8 +73,8 @@ class EveryElement : public testing::TestWithParam<Case> {
  protected:
   template <class Check>
   void with_each_material(const Check& check) const {
-    for (const MaterialDescription& material : example_materials()) {
-      if (!suits(element_kind(GetParam().element), material)) continue;
+    for (const solids::MaterialDescription& material : example_materials()) {
+      if (!suits(solids::element_kind(GetParam().element), material)) continue;
       SCOPED_TRACE(label(material));
       Example example(GetParam(), material);
       check(example);
@@ -156,7 +156,7 @@ TEST_P(EveryElement, ComputesTheSameWithEveryInstructionSet) {
     const SolidStep::Result widest = s.step.evaluate(*s.group);
     for (const char* isa : {"baseline", "avx2"}) {
       try {
-        (void)material_kernels(isa);
+        (void)solids::material_kernels(isa);
       } catch (const InputError&) {
         continue;
       }
@@ -227,12 +227,12 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryElement, testing::ValuesIn(cases()),
 class EveryElementKind : public testing::TestWithParam<std::string> {
  protected:
   Random random_{3};
-  const ElementKind& kind_ = element_kind(GetParam());
+  const solids::ElementKind& kind_ = solids::element_kind(GetParam());
   std::vector<Vec3> X_ = distorted_element(kind_, random_);
-  std::shared_ptr<const Material> material_ =
-      example_material({.kind = "mooney_rivlin_uncoupled",
-                        .values = example_values(material_kind("mooney_rivlin_uncoupled"))});
-  std::unique_ptr<SolidElements> group_ = one_element(kind_, X_, material_);
+  std::shared_ptr<const solids::Material> material_ = example_material(
+      {.kind = "mooney_rivlin_uncoupled",
+       .values = example_values(solids::material_kind("mooney_rivlin_uncoupled"))});
+  std::unique_ptr<solids::SolidElements> group_ = one_element(kind_, X_, material_);
 };
 
 TEST_P(EveryElementKind, HasSixMotionsWithoutStiffness) {
@@ -252,14 +252,14 @@ TEST_P(EveryElementKind, HasTheMassOfItsVolumeAndThatOfRigidMotion) {
   EXPECT_LT((M - M.transpose()).norm(), 1e-15 * M.norm());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat>(M).eigenvalues()[0], 1e-4 * M.maxCoeff());
   // Mass, first and second moments by a rule of many points.
-  const Quadrature fine = kind_.shape.substr(0, 3) == "hex" ? hexahedron_rule(5)
-                          : kind_.shape == "wedge6"         ? wedge_rule()
-                                                            : tetrahedron_rule(7);
+  const solids::Quadrature fine = kind_.shape.substr(0, 3) == "hex" ? solids::hexahedron_rule(5)
+                                  : kind_.shape == "wedge6"         ? solids::wedge_rule()
+                                                                    : solids::tetrahedron_rule(7);
   double mass = 0.0;
   Vec3 first = Vec3::Zero();
-  for (const QuadraturePoint& p : fine) {
-    const double w = 1100.0 * p.weight * jacobian(kind_.cell(), X_.data(), p.xi);
-    const Vec N = shape_functions(kind_.cell(), p.xi);
+  for (const solids::QuadraturePoint& p : fine) {
+    const double w = 1100.0 * p.weight * solids::jacobian(kind_.cell(), X_.data(), p.xi);
+    const Vec N = solids::shape_functions(kind_.cell(), p.xi);
     for (int a = 0; a < n; ++a) first += w * N[a] * X_[static_cast<std::size_t>(a)];
     mass += w;
   }
@@ -301,7 +301,7 @@ TEST_P(EveryElementKind, ReportsAHomogeneousStateExactly) {
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryElementKind, testing::ValuesIn([] {
                            std::vector<std::string> names;
-                           for (const ElementKind& kind : element_kinds())
+                           for (const solids::ElementKind& kind : solids::element_kinds())
                              names.push_back(kind.name);
                            return names;
                          }()),

@@ -12,9 +12,9 @@ namespace {
 /// Fields in the space of an element's polynomials are extrapolated to its nodes exactly.
 // @tests{nodal-stress}
 TEST(Extrapolation, IsExactForThePolynomialsOfEveryKindOfElement) {
-  for (const ElementKind& kind : element_kinds()) {
-    const Extrapolation E = extrapolation(kind);
-    const CellShape& cell = kind.cell();
+  for (const solids::ElementKind& kind : solids::element_kinds()) {
+    const solids::Extrapolation E = solids::extrapolation(kind);
+    const solids::CellShape& cell = kind.cell();
     ASSERT_EQ(E.rows(), cell.size()) << kind.name;
     ASSERT_EQ(E.cols(), static_cast<Eigen::Index>(kind.stiffness.size())) << kind.name;
     const bool one = kind.stiffness.size() == 1, hexahedron = cell.corners == 8;

@@ -20,20 +20,21 @@ struct Constant : TimeFunction {
   bool is_constant() const override { return true; }
 };
 
-std::unique_ptr<SolidElements> solid_of(const Mesh& mesh, const ElementKind& kind,
-                                        std::shared_ptr<const Material> material) {
-  return make_solid_elements({.name = "solids.block",
-                              .element = kind.name,
-                              .material = std::move(material),
-                              .density = 1000.0,
-                              .connectivity = mesh.blocks[0].nodes,
-                              .X = mesh.nodes,
-                              .fibres = {Vec3(1.0, 0.4, -0.3)}});
+std::unique_ptr<solids::SolidElements> solid_of(const solids::Mesh& mesh,
+                                                const solids::ElementKind& kind,
+                                                std::shared_ptr<const solids::Material> material) {
+  return solids::make_solid_elements({.name = "solids.block",
+                                      .element = kind.name,
+                                      .material = std::move(material),
+                                      .density = 1000.0,
+                                      .connectivity = mesh.blocks[0].nodes,
+                                      .X = mesh.nodes,
+                                      .fibres = {Vec3(1.0, 0.4, -0.3)}});
 }
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names;
-  for (const ElementKind& kind : element_kinds()) names.push_back(kind.name);
+  for (const solids::ElementKind& kind : solids::element_kinds()) names.push_back(kind.name);
   return names;
 }
 
@@ -49,7 +50,7 @@ std::vector<int> free_components(const std::vector<Vec3>& X, const Keep& keep) {
 
 /// Moves corners that are not on the boundary; nodes between them follow, so that edges are
 /// straight.
-void distort(Mesh& mesh, const CellShape& cell, Random& random) {
+void distort(solids::Mesh& mesh, const solids::CellShape& cell, Random& random) {
   std::set<int> corners;
   for (std::size_t e = 0; e < mesh.blocks[0].nodes.size(); e += cell.nodes.size())
     for (int a = 0; a < cell.corners; ++a)
@@ -58,11 +59,11 @@ void distort(Mesh& mesh, const CellShape& cell, Random& random) {
     if (mesh.nodes[static_cast<std::size_t>(i)].cwiseAbs().maxCoeff() < 0.49)
       mesh.nodes[static_cast<std::size_t>(i)] += random.vector(0.08);
   if (cell.corners == cell.size()) return;
-  const CellShape& straight = cell_shape(cell.corners == 8 ? "hex8" : "tet4");
+  const solids::CellShape& straight = solids::cell_shape(cell.corners == 8 ? "hex8" : "tet4");
   for (std::size_t e = 0; e < mesh.blocks[0].nodes.size(); e += cell.nodes.size()) {
     const int* own = mesh.blocks[0].nodes.data() + e;
     for (int a = cell.corners; a < cell.size(); ++a) {
-      const Vec N = shape_functions(straight, cell.nodes[static_cast<std::size_t>(a)]);
+      const Vec N = solids::shape_functions(straight, cell.nodes[static_cast<std::size_t>(a)]);
       Vec3 x = Vec3::Zero();
       for (int b = 0; b < cell.corners; ++b)
         x += N[b] * mesh.nodes[static_cast<std::size_t>(own[b])];
@@ -76,13 +77,13 @@ class Patch : public testing::TestWithParam<std::string> {};
 // The boundary of a distorted block has a homogeneous large strain: the interior has the same
 // strain at every point.
 TEST_P(Patch, IsStrainedHomogeneouslyIfItsBoundaryIs) {
-  const ElementKind& kind = element_kind(GetParam());
-  for (const MaterialDescription& d : example_materials()) {
+  const solids::ElementKind& kind = solids::element_kind(GetParam());
+  for (const solids::MaterialDescription& d : example_materials()) {
     if (!suits(kind, d)) continue;
     SCOPED_TRACE(label(d));
     Random random(11);
-    Mesh mesh =
-        make_mesh("patch", "block", {{"size", {1, 1, 1}}, {"cells", {2, 2, 2}}}, kind.shape);
+    solids::Mesh mesh = solids::make_mesh("patch", "block",
+                                          {{"size", {1, 1, 1}}, {"cells", {2, 2, 2}}}, kind.shape);
     distort(mesh, kind.cell(), random);
     const auto group = solid_of(mesh, kind, example_material(d));
     Mat3 F;
@@ -121,7 +122,7 @@ TEST_P(Patch, IsStrainedHomogeneouslyIfItsBoundaryIs) {
     Vec6 e;
     e << E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0);
     const Vec3 A = Vec3(1.0, 0.4, -0.3).normalized();
-    const Vec6 s = discrete_stress(group->material(), e, e, A).S;
+    const Vec6 s = solids::discrete_stress(group->material(), e, e, A).S;
     Mat3 S;
     S << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
     const Mat3 cauchy = F * S * F.transpose() / F.determinant();
@@ -137,27 +138,27 @@ INSTANTIATE_TEST_SUITE_P(Registry, Patch, testing::ValuesIn(kind_names()),
 /// Timoshenko's beam with a shear factor of 5/6.
 double cantilever(const std::string& element, int along, int across, double slenderness) {
   const double L = 10.0, h = L / slenderness, E = 1e4, nu = 0.3, P = 1.0;
-  const ElementKind& kind = element_kind(element);
+  const solids::ElementKind& kind = solids::element_kind(element);
   const double n = along, m = across;
-  const Mesh mesh =
-      make_mesh("beam", "block", {{"size", {L, h, h}}, {"cells", {n, m, m}}}, kind.shape);
+  const solids::Mesh mesh =
+      solids::make_mesh("beam", "block", {{"size", {L, h, h}}, {"cells", {n, m, m}}}, kind.shape);
   const double mu = E / (2.0 * (1.0 + nu));
-  const MaterialDescription described =
+  const solids::MaterialDescription described =
       kind.sizes().mean_dilatation
-          ? MaterialDescription{.kind = "mooney_rivlin_uncoupled",
-                                .values = {{"c1", 0.5 * mu},
-                                           {"bulk_modulus", E / (3.0 * (1.0 - 2.0 * nu))}}}
-          : MaterialDescription{.kind = "elastic",
-                                .values = {{"youngs_modulus", E}, {"poisson_ratio", nu}}};
-  const auto group = solid_of(mesh, kind, make_material("m", described));
+          ? solids::MaterialDescription{.kind = "mooney_rivlin_uncoupled",
+                                        .values = {{"c1", 0.5 * mu},
+                                                   {"bulk_modulus", E / (3.0 * (1.0 - 2.0 * nu))}}}
+          : solids::MaterialDescription{.kind = "elastic",
+                                        .values = {{"youngs_modulus", E}, {"poisson_ratio", nu}}};
+  const auto group = solid_of(mesh, kind, solids::make_material("m", described));
   SolidStep step(mesh.nodes, context_of(1.0));
   step.begin(*group);
   step.stand_still();
-  std::vector<LoadedFaces> end;
-  for (const FaceBlock& block : mesh.surfaces.at("xmax").blocks)
+  std::vector<solids::LoadedFaces> end;
+  for (const solids::FaceBlock& block : mesh.surfaces.at("xmax").blocks)
     end.push_back({block.type, block.nodes});
-  const auto load = make_traction("loads.end", end, mesh.nodes,
-                                  {nullptr, nullptr, std::make_shared<Constant>(P / (h * h))});
+  const auto load = solids::make_traction(
+      "loads.end", end, mesh.nodes, {nullptr, nullptr, std::make_shared<Constant>(P / (h * h))});
   const std::vector<int> free =
       free_components(mesh.nodes, [&](const Vec3& X) { return X[0] < -0.4999 * L; });
   const Mat K = -step.evaluate(*group).tangent(free, free);

@@ -16,14 +16,14 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-std::shared_ptr<const Material> rubber() {
-  return make_material(
+std::shared_ptr<const solids::Material> rubber() {
+  return solids::make_material(
       "materials.rubber",
       {.kind = "neo_hookean", .values = {{"youngs_modulus", 1e6}, {"poisson_ratio", 0.3}}});
 }
 
-SolidElementsDescription cube(const std::string& element = "hex8_standard") {
-  static const std::vector<Vec3> X = cell_shape("hex8").nodes;
+solids::SolidElementsDescription cube(const std::string& element = "hex8_standard") {
+  static const std::vector<Vec3> X = solids::cell_shape("hex8").nodes;
   return {.name = "solids.pad",
           .element = element,
           .material = rubber(),
@@ -36,22 +36,22 @@ auto refused(const char* part, const char* more = "") {
   return ThrowsMessage<InputError>(
       AllOf(StartsWith("solids.pad"), HasSubstr(part), HasSubstr(more)));
 }
-auto make(SolidElementsDescription d) {
-  return [d] { (void)make_solid_elements(d); };
+auto make(solids::SolidElementsDescription d) {
+  return [d] { (void)solids::make_solid_elements(d); };
 }
 
 TEST(SolidElements, NameTheElementThatIsInvertedOrFlat) {
   auto d = cube();
   d.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 0, 1, 2, 3};
   EXPECT_THAT(make(d), refused("element 1", "inverted"));
-  std::vector<Vec3> flat = cell_shape("hex8").nodes;
+  std::vector<Vec3> flat = solids::cell_shape("hex8").nodes;
   for (Vec3& X : flat) X[2] = 0.0;
   d = cube();
   d.X = flat;
   EXPECT_THAT(make(d), refused("element 0", "flat"));
   // One corner pushed through the opposite faces: the inversion is not visible at the points of the
   // rule.
-  std::vector<Vec3> dented = cell_shape("hex8").nodes;
+  std::vector<Vec3> dented = solids::cell_shape("hex8").nodes;
   dented[6] = Vec3(0.0, 0.0, 0.0);
   d = cube();
   d.X = dented;
@@ -71,35 +71,35 @@ TEST(SolidElements, RefuseInvalidDescriptions) {
   d = cube("hex8_q1p0");
   EXPECT_THAT(make(d), refused("needs an uncoupled material"));
   d = cube();
-  d.material = make_material("m", {.kind = "elastic",
-                                   .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
-                                   .fibre = "exponential",
-                                   .fibre_values = {{"xi", 1.0}, {"alpha", 1.0}}});
+  d.material = solids::make_material("m", {.kind = "elastic",
+                                           .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
+                                           .fibre = "exponential",
+                                           .fibre_values = {{"xi", 1.0}, {"alpha", 1.0}}});
   EXPECT_THAT(make(d), refused("fibres"));
-  EXPECT_THROW((void)make_solid_elements(cube("hex20r")), InputError);
+  EXPECT_THROW((void)solids::make_solid_elements(cube("hex20r")), InputError);
 }
 
 TEST(SolidElements, WarnOfElementsThatLock) {
-  EXPECT_THAT(make_solid_elements(cube())->warnings(),
+  EXPECT_THAT(solids::make_solid_elements(cube())->warnings(),
               testing::ElementsAre(HasSubstr("hex8_standard locks")));
-  EXPECT_THAT(make_solid_elements(cube("hex8_eas9"))->warnings(), testing::IsEmpty());
+  EXPECT_THAT(solids::make_solid_elements(cube("hex8_eas9"))->warnings(), testing::IsEmpty());
 }
 
 TEST(SolidElements, AreChosenByCellsAndMaterial) {
-  EXPECT_EQ(choose_element("solids.pad", "hex8", "hex8", false).name, "hex8_eas9");
-  EXPECT_EQ(choose_element("solids.pad", "", "hex8", true).name, "hex8_q1p0");
-  EXPECT_EQ(choose_element("solids.pad", "", "tet10", true).name, "tet10");
-  EXPECT_THAT([] { (void)choose_element("solids.pad", "tet10", "hex8", false); },
+  EXPECT_EQ(solids::choose_element("solids.pad", "hex8", "hex8", false).name, "hex8_eas9");
+  EXPECT_EQ(solids::choose_element("solids.pad", "", "hex8", true).name, "hex8_q1p0");
+  EXPECT_EQ(solids::choose_element("solids.pad", "", "tet10", true).name, "tet10");
+  EXPECT_THAT([] { (void)solids::choose_element("solids.pad", "tet10", "hex8", false); },
               refused("does not fit the mesh", "hex8_eas9"));
-  EXPECT_THAT([] { (void)choose_element("solids.pad", "hex8_q1p0", "hex8", false); },
+  EXPECT_THAT([] { (void)solids::choose_element("solids.pad", "hex8_q1p0", "hex8", false); },
               refused("uncoupled"));
-  EXPECT_THAT([] { (void)choose_element("solids.pad", "hex8_eas", "hex8", false); },
+  EXPECT_THAT([] { (void)solids::choose_element("solids.pad", "hex8_eas", "hex8", false); },
               refused("Did you mean 'hex8_eas9'?"));
 }
 
 TEST(SolidElements, ReportAnEnhancedElementThatIsCompressedTooFar) {
-  const auto group = make_solid_elements(cube("hex8_eas9"));
-  SolidStep step(cell_shape("hex8").nodes, context_of(1.0));
+  const auto group = solids::make_solid_elements(cube("hex8_eas9"));
+  SolidStep step(solids::cell_shape("hex8").nodes, context_of(1.0));
   step.begin(*group);
   const auto least_at = [&](double stretch) {
     for (int i = 0; i < 8; ++i)
@@ -115,8 +115,8 @@ TEST(SolidElements, ReportAnEnhancedElementThatIsCompressedTooFar) {
 }
 
 TEST(SolidElements, NameTheElementThatCollapses) {
-  const auto group = make_solid_elements(cube());
-  SolidStep step(cell_shape("hex8").nodes, context_of(1.0));
+  const auto group = solids::make_solid_elements(cube());
+  SolidStep step(solids::cell_shape("hex8").nodes, context_of(1.0));
   step.begin(*group);
   for (int i = 4; i < 8; ++i) step.x_n1[3 * i + 2] = -2.0;
   const SolidStep::Result r = step.evaluate(*group);
@@ -127,13 +127,13 @@ TEST(SolidElements, NameTheElementThatCollapses) {
 // The pressure of mean dilatation that the tangent uses is extrapolated with the displacements of
 // nodes: after a small displacement it is exact to second order. Forces do not depend on it.
 TEST(MeanDilatation, ExtrapolatesItsPressureForTangentsOnly) {
-  const ElementKind& kind = element_kind("hex8_q1p0");
+  const solids::ElementKind& kind = solids::element_kind("hex8_q1p0");
   Random random(3);
   const std::vector<Vec3> X = distorted_element(kind, random);
   const auto group =
       one_element(kind, X,
-                  make_material("m", {.kind = "mooney_rivlin_uncoupled",
-                                      .values = {{"c1", 1.0}, {"bulk_modulus", 1e3}}}));
+                  solids::make_material("m", {.kind = "mooney_rivlin_uncoupled",
+                                              .values = {{"c1", 1.0}, {"bulk_modulus", 1e3}}}));
   const auto difference = [&](double size, bool advance) {
     SolidStep step(X, context_of(1.0));
     step.begin(*group);
@@ -160,7 +160,7 @@ TEST(MeanDilatation, ExtrapolatesItsPressureForTangentsOnly) {
 // One correction at a time, nodes and modes together: Newton's method converges as with modes in
 // equilibrium at every evaluation.
 TEST(EnhancedStrains, ConvergeTogetherWithTheNodes) {
-  const ElementKind& kind = element_kind("hex8_eas9");
+  const solids::ElementKind& kind = solids::element_kind("hex8_eas9");
   Random random(3);
   const std::vector<Vec3> X = distorted_element(kind, random);
   const auto group = one_element(kind, X, rubber());

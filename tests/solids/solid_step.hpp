@@ -148,39 +148,41 @@ class SolidStep {
 };
 
 /// A material of the examples, with viscosity if given.
-[[nodiscard]] inline std::shared_ptr<const Material> example_material(MaterialDescription d,
-                                                                      bool viscous = false) {
+[[nodiscard]] inline std::shared_ptr<const solids::Material> example_material(
+    solids::MaterialDescription d, bool viscous = false) {
   if (viscous) d.relaxation_time = 0.2;
-  return make_material("materials.m", d);
+  return solids::make_material("materials.m", d);
 }
 
 /// One element of a kind, slightly distorted; lengths of about 2.
-[[nodiscard]] inline std::vector<Vec3> distorted_element(const ElementKind& kind, Random& random,
-                                                         double size = 0.06) {
+[[nodiscard]] inline std::vector<Vec3> distorted_element(const solids::ElementKind& kind,
+                                                         Random& random, double size = 0.06) {
   std::vector<Vec3> X;
   for (const Vec3& xi : kind.cell().nodes) X.push_back(xi + random.vector(size));
   return X;
 }
 
-[[nodiscard]] inline std::unique_ptr<SolidElements> one_element(
-    const ElementKind& kind, std::span<const Vec3> X, std::shared_ptr<const Material> material,
-    bool conserving = true, const std::string& isa = "automatic") {
+[[nodiscard]] inline std::unique_ptr<solids::SolidElements> one_element(
+    const solids::ElementKind& kind, std::span<const Vec3> X,
+    std::shared_ptr<const solids::Material> material, bool conserving = true,
+    const std::string& isa = "automatic") {
   std::vector<int> connectivity;
   for (int i = 0; i < kind.sizes().nodes; ++i) connectivity.push_back(i);
-  return make_solid_elements({.name = "solids.one",
-                              .element = kind.name,
-                              .material = std::move(material),
-                              .density = 1100.0,
-                              .conserving = conserving,
-                              .connectivity = connectivity,
-                              .X = X,
-                              .fibres = {Vec3(1.0, 0.4, -0.3)},
-                              .isa = isa});
+  return solids::make_solid_elements({.name = "solids.one",
+                                      .element = kind.name,
+                                      .material = std::move(material),
+                                      .density = 1100.0,
+                                      .conserving = conserving,
+                                      .connectivity = connectivity,
+                                      .X = X,
+                                      .fibres = {Vec3(1.0, 0.4, -0.3)},
+                                      .isa = isa});
 }
 
 /// Whether a material can be used in an element.
-[[nodiscard]] inline bool suits(const ElementKind& kind, const MaterialDescription& material) {
-  return !kind.sizes().mean_dilatation || material_kind(material.kind).uncoupled;
+[[nodiscard]] inline bool suits(const solids::ElementKind& kind,
+                                const solids::MaterialDescription& material) {
+  return !kind.sizes().mean_dilatation || solids::material_kind(material.kind).uncoupled;
 }
 
 }  // namespace polhode::test

@@ -13,9 +13,10 @@ namespace {
 
 /// Values of a field at points, in the first column.
 template <class Field>
-double fitted(const CloudFit& fit, const std::vector<Vec3>& points, const Field& field,
+double fitted(const solids::CloudFit& fit, const std::vector<Vec3>& points, const Field& field,
               const Vec3& at) {
-  CloudFit::Coefficients moments = CloudFit::Coefficients::Zero(fit.size(), kRecovered);
+  solids::CloudFit::Coefficients moments =
+      solids::CloudFit::Coefficients::Zero(fit.size(), solids::kRecovered);
   for (const Vec3& X : points) moments.col(0) += fit.monomials(X) * field(X);
   return fit.monomials(at).dot(fit.coefficients(moments).col(0));
 }
@@ -45,7 +46,7 @@ const Mat3 kShapes[] = {Mat3::Identity(),
 TEST(CloudFit, IsExactForQuadraticsWhereTwoCellsMeetInEveryDirection) {
   for (const Mat3& shape : kShapes) {
     const std::vector<Vec3> points = cloud(2, 2, 2, shape);
-    const CloudFit fit(points, 2);
+    const solids::CloudFit fit(points, 2);
     EXPECT_EQ(fit.terms(), 10);
     const Mat3 back = shape.inverse();
     const auto field = [&](const Vec3& X) {
@@ -65,7 +66,7 @@ TEST(CloudFit, IsExactForQuadraticsOfManyPointsInAnyOrientation) {
   };
   for (const Mat3& shape : {Mat3(Mat3::Identity()), turn}) {
     const std::vector<Vec3> points = cloud(3, 3, 3, shape);
-    const CloudFit fit(points, 2);
+    const solids::CloudFit fit(points, 2);
     EXPECT_EQ(fit.terms(), 10);
     for (const Vec3& x : {Vec3(0, 0, 0), Vec3(3, 3, 3), Vec3(0.3, 1.7, 3)})
       EXPECT_NEAR(fitted(fit, points, field, shape * x), field(shape * x), 1e-10);
@@ -76,18 +77,18 @@ TEST(CloudFit, IsExactForQuadraticsOfManyPointsInAnyOrientation) {
 TEST(CloudFit, IsExactForProductsOfSquaresAlongDirections) {
   for (const Mat3& shape : kShapes) {
     const std::vector<Vec3> points = cloud(2, 2, 2, shape), layer = cloud(2, 2, 1, shape);
-    EXPECT_EQ(CloudFit(points, 2, &shape).terms(), 27);
-    EXPECT_EQ(CloudFit(layer, 2, &shape).terms(), 18);
+    EXPECT_EQ(solids::CloudFit(points, 2, &shape).terms(), 27);
+    EXPECT_EQ(solids::CloudFit(layer, 2, &shape).terms(), 18);
     const Mat3 back = shape.inverse();
     const auto field = [&](const Vec3& X) {
       const Vec3 x = back * X;
       return (1.0 + x[0] - x[0] * x[0]) * (2.0 - x[1] * x[1]) * (1.0 - 3.0 * x[2]);
     };
     for (const Vec3& x : {Vec3(0, 0, 0), Vec3(2, 2, 1), Vec3(0.3, 1.7, 1)}) {
-      EXPECT_NEAR(fitted(CloudFit(points, 2, &shape), points, field, shape * x), field(shape * x),
-                  1e-7);
-      EXPECT_NEAR(fitted(CloudFit(layer, 2, &shape), layer, field, shape * x), field(shape * x),
-                  1e-7);
+      EXPECT_NEAR(fitted(solids::CloudFit(points, 2, &shape), points, field, shape * x),
+                  field(shape * x), 1e-7);
+      EXPECT_NEAR(fitted(solids::CloudFit(layer, 2, &shape), layer, field, shape * x),
+                  field(shape * x), 1e-7);
     }
   }
 }
@@ -101,10 +102,10 @@ TEST(CloudFit, LeavesOutTermsThatThePointsDoNotDetermine) {
       return (2.0 - x[0]) * (x[2] - 0.5);
     };
     const std::vector<Vec3> layer = cloud(2, 2, 1, shape), one = cloud(1, 1, 1, shape);
-    EXPECT_EQ(CloudFit(layer, 2).terms(), 9);
-    EXPECT_EQ(CloudFit(one, 2).terms(), 7);
+    EXPECT_EQ(solids::CloudFit(layer, 2).terms(), 9);
+    EXPECT_EQ(solids::CloudFit(one, 2).terms(), 7);
     for (const auto* points : {&layer, &one}) {
-      const CloudFit fit(*points, 2);
+      const solids::CloudFit fit(*points, 2);
       const Vec3 corner = shape * Vec3(0, 0, 1);
       EXPECT_NEAR(fitted(fit, *points, product, corner), 1.0, 1e-8);
       EXPECT_NEAR(fitted(
@@ -113,42 +114,42 @@ TEST(CloudFit, LeavesOutTermsThatThePointsDoNotDetermine) {
     }
   }
   const std::vector<Vec3> point{Vec3(1, 2, 3)};
-  EXPECT_EQ(CloudFit(point, 1).terms(), 1);
+  EXPECT_EQ(solids::CloudFit(point, 1).terms(), 1);
   EXPECT_NEAR(fitted(
-                  CloudFit(point, 1), point, [](const Vec3&) { return 7.0; }, Vec3::Zero()),
+                  solids::CloudFit(point, 1), point, [](const Vec3&) { return 7.0; }, Vec3::Zero()),
               7.0, 1e-14);
 }
 
 /// A field at the nodes of a tube, from corner values that interpolate it linearly in each element
 /// where its error vanishes: third order, at the boundary too.
 double largest_error(const char* cell, double n) {
-  const Mesh mesh = make_mesh(
+  const solids::Mesh mesh = solids::make_mesh(
       "tube", "tube", {{"outer", {2}}, {"inner", {1}}, {"length", {0.2}}, {"cells", {n, 8 * n, 1}}},
       cell);
   const auto field = [](const Vec3& X) { return 1.0 / X.head<2>().squaredNorm(); };
   const int corners = mesh.element_shape(0).corners;
-  RecoveredValues at_corners =
-      RecoveredValues::Zero(static_cast<Eigen::Index>(corners) * mesh.element_count(), kRecovered);
+  solids::RecoveredValues at_corners = solids::RecoveredValues::Zero(
+      static_cast<Eigen::Index>(corners) * mesh.element_count(), solids::kRecovered);
   for (int e = 0; e < mesh.element_count(); ++e)
     for (int c = 0; c < corners; ++c) {
       // Linear between points at 1/√3 of the distance from the middle.
-      const CellShape& shape = mesh.element_shape(e);
+      const solids::CellShape& shape = mesh.element_shape(e);
       double sum = 0.0;
       const double out = corners == 8 ? std::sqrt(3.0) : 1.0;
       for (int k = 0; k < corners; ++k) {
         const Vec3 at = shape.nodes[static_cast<std::size_t>(k)] / out;
         Vec3 X = Vec3::Zero();
-        const Vec N = shape_functions(shape, at);
+        const Vec N = solids::shape_functions(shape, at);
         for (int a = 0; a < shape.size(); ++a)
           X += N[a] * mesh.nodes[static_cast<std::size_t>(
                           mesh.element_nodes(e)[static_cast<std::size_t>(a)])];
-        const Vec share = shape_functions(
-            cell_shape("hex8"), shape.nodes[static_cast<std::size_t>(c)] * std::sqrt(3.0));
+        const Vec share = solids::shape_functions(
+            solids::cell_shape("hex8"), shape.nodes[static_cast<std::size_t>(c)] * std::sqrt(3.0));
         sum += share[k] * field(X);
       }
       at_corners(e * corners + c, 0) = sum;
     }
-  const RecoveredValues values = StressPatches(mesh).at_nodes(at_corners);
+  const solids::RecoveredValues values = solids::StressPatches(mesh).at_nodes(at_corners);
   double worst = 0.0;
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
     worst =
@@ -168,8 +169,9 @@ TEST(StressPatches, AreOfAboutThirdOrderUpToTheBoundary) {
 
 TEST(StressPatches, SuitQuadraticCellsAndTet4) {
   for (const char* cell : {"hex20", "hex27", "tet4", "tet10", "hex8", "wedge6"}) {
-    const Mesh mesh = make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, cell);
-    EXPECT_EQ(StressPatches::suit(mesh),
+    const solids::Mesh mesh =
+        solids::make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, cell);
+    EXPECT_EQ(solids::StressPatches::suit(mesh),
               cell != std::string("hex8") && cell != std::string("wedge6"));
   }
 }

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Model swing(const std::string& analysis, const std::string& more = "") {
-  return read_model_text(
+  return io::read_model_text(
       "format: 1\ntitle: Swing & <co>\ngravity: [0, 0, -9.81]\nbodies:\n"
       "  bar: {shape: {box: [1, 0.05, 0.05]}, density: 1000, position: [0.5, 0, 0]}\n"
       "joints:\n  A: {type: revolute, bodies: [ground, bar], at: [0, 0, 0], axis: y}\n"
@@ -60,7 +60,7 @@ TEST(Certify, HalvesTheStepTwiceAndFindsTheOrder) {
 }
 
 TEST(Certify, FindsOnlyRoundingErrorsInFreeFlight) {
-  const Certificate c = certify(read_model_text(
+  const Certificate c = certify(io::read_model_text(
       "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
       "  stone: {mass: 1, inertia: [1, 1, 1], velocity: [3, 0, 4]}\n"
       "analysis: {duration: 1 s, step: 10 ms}\noutput: {probes: {p: {body: stone}}}\n",
@@ -89,7 +89,7 @@ TEST(Certify, RefinesTheToleranceOfAutomaticSteps) {
 
 // The motion of a chaotic triple pendulum: two runs diverge within seconds.
 TEST(Certify, ReportsWhenChaosEndsConvergence) {
-  Model model = read_model_text(
+  Model model = io::read_model_text(
       "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
       "  a: {mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]}\n"
       "  b: {mass: 1, inertia: [0.01, 0.1, 0.1], position: [1.5, 0, 0]}\n"
@@ -130,14 +130,14 @@ TEST(Certify, ReportsWhenChaosEndsConvergence) {
 }
 
 TEST(Certify, ExpectsOrderOneWithImpacts) {
-  const Certificate c =
-      certify(read_model_text("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
-                              "  floor: {fixed: true, shape: {plane: z}}\n"
-                              "  ball: {shape: {sphere: 0.1}, mass: 1, position: [0, 0, 0.5]}\n"
-                              "contacts: {default: {restitution: 0.5}}\n"
-                              "analysis: {duration: 1 s, step: 2 ms}\noutput: {probes: {p: {body: "
-                              "ball}, c: {contact: [ball, floor]}}}\n",
-                              "ball.yaml"));
+  const Certificate c = certify(
+      io::read_model_text("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+                          "  floor: {fixed: true, shape: {plane: z}}\n"
+                          "  ball: {shape: {sphere: 0.1}, mass: 1, position: [0, 0, 0.5]}\n"
+                          "contacts: {default: {restitution: 0.5}}\n"
+                          "analysis: {duration: 1 s, step: 2 ms}\noutput: {probes: {p: {body: "
+                          "ball}, c: {contact: [ball, floor]}}}\n",
+                          "ball.yaml"));
   EXPECT_THAT(c.orders, ElementsAre(1.0, 2.0));
   EXPECT_TRUE(c.finished());
   const CertifiedQuantity& place = quantity(c, "p x y z");

@@ -73,7 +73,7 @@ struct BoundSpecs {
 };
 
 /// Number of specs that have this field.
-inline int owners(const Field& field) {
+inline int owners(const io::Field& field) {
   int count = 0;
   BoundSpecs().each([&]<class Spec>(Spec&) { count += field.member.belongs_to<Spec>(); });
   return count;

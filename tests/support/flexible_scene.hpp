@@ -38,8 +38,8 @@ struct FlexibleScene {
 
   explicit FlexibleScene(const Options& o) : options(o) {
     const Vec3 size(6.0, 0.5, 0.5), centre(0.5 + 0.5 * size[0], 0, 0);
-    Mesh mesh = make_mesh("bar", "block",
-                          {{"size", {size[0], size[1], size[2]}}, {"cells", o.cells}}, o.cell);
+    solids::Mesh mesh = solids::make_mesh(
+        "bar", "block", {{"size", {size[0], size[1], size[2]}}, {"cells", o.cells}}, o.cell);
     system.set_gravity(o.gravity);
     const Vec3 tip_at(size[0] + 1.0, 0, 0);
     // No total momentum, since a growing distance would only add round-off.
@@ -72,19 +72,19 @@ struct FlexibleScene {
       }
       system.add_node(node);
     }
-    MaterialDescription material;
+    solids::MaterialDescription material;
     material.kind = o.material;
     material.values = {o.moduli.begin(), o.moduli.end()};
     material.relaxation_time = o.relaxation_time;
-    SolidElementsDescription d;
+    solids::SolidElementsDescription d;
     d.name = "solids.bar";
     d.element = o.element;
-    d.material = make_material("materials.m", material);
+    d.material = solids::make_material("materials.m", material);
     d.density = 0.5;
     d.conserving = o.conserving;
     d.connectivity = mesh.blocks.at(0).nodes;
     d.X = X;
-    system.add_elements(make_solid_elements(std::move(d)));
+    system.add_elements(solids::make_solid_elements(std::move(d)));
     if (o.hinge)
       system.group<Joint>().add("pin", "revolute", Participants{kGround, hub},
                                 joint_kind("revolute").recipe({.Z_a = pivot, .Z_b = pivot}, {}));

@@ -13,8 +13,8 @@
 namespace polhode::test {
 
 /// Stiffnesses of size one, for surfaces of size one.
-inline SurfaceLaw soft_law(double tolerance, double mu, double end_share = 0.0) {
-  SurfaceLaw l;
+inline surface_contact::SurfaceLaw soft_law(double tolerance, double mu, double end_share = 0.0) {
+  surface_contact::SurfaceLaw l;
   l.normal.tolerance = tolerance;
   l.normal.stiffness = 30.0;
   l.mu = mu;
@@ -69,11 +69,11 @@ Mat tangent_over(const NodeStep& step, std::size_t size, const Contact& contact,
   return K;
 }
 
-inline Vec forces(const SolidContact& contact, const MovingNodes& nodes,
+inline Vec forces(const surface_contact::SolidContact& contact, const MovingNodes& nodes,
                   const std::vector<double>& history) {
   return forces_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
-inline Mat tangent(const SolidContact& contact, const MovingNodes& nodes,
+inline Mat tangent(const surface_contact::SolidContact& contact, const MovingNodes& nodes,
                    const std::vector<double>& history) {
   return tangent_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
@@ -83,7 +83,8 @@ inline constexpr std::size_t kPointNumbers = 14, kLoweredNumber = 11;
 inline std::size_t first_of_points(const MovingNodes& nodes) { return 3 * nodes.X.size() + 1; }
 
 /// History at the start, with the whole band for points that start within it.
-inline std::vector<double> with_whole_bands(const SolidContact& contact, const MovingNodes& nodes) {
+inline std::vector<double> with_whole_bands(const surface_contact::SolidContact& contact,
+                                            const MovingNodes& nodes) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   for (std::size_t p = 1; p <= contact.points().size(); ++p)
@@ -91,8 +92,8 @@ inline std::vector<double> with_whole_bands(const SolidContact& contact, const M
   return history;
 }
 /// A history in which every point has a bristle, and its whole band.
-inline std::vector<double> bristles(const SolidContact& contact, const MovingNodes& nodes,
-                                    unsigned seed) {
+inline std::vector<double> bristles(const surface_contact::SolidContact& contact,
+                                    const MovingNodes& nodes, unsigned seed) {
   Random random(seed);
   std::vector<double> history = with_whole_bands(contact, nodes);
   for (std::size_t p = 0; p < contact.points().size(); ++p)

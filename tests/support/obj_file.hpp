@@ -11,7 +11,7 @@
 
 namespace polhode::test {
 
-inline void write_obj(const std::string& file, const TriangleSurface& surface) {
+inline void write_obj(const std::string& file, const geometry::TriangleSurface& surface) {
   std::ofstream out(file);
   for (const Vec3& x : surface.points)
     out << format("v {:.17g} {:.17g} {:.17g}\n", x[0], x[1], x[2]);
@@ -20,8 +20,8 @@ inline void write_obj(const std::string& file, const TriangleSurface& surface) {
 }
 
 /// A box about the origin with n × n × 1 cells.
-inline TriangleSurface plate(const Vec3& size, int n) {
-  TriangleSurface s;
+inline geometry::TriangleSurface plate(const Vec3& size, int n) {
+  geometry::TriangleSurface s;
   const int m = n + 1;
   for (int k = 0; k < 2; ++k)
     for (int j = 0; j < m; ++j)
@@ -48,8 +48,8 @@ inline TriangleSurface plate(const Vec3& size, int n) {
 }
 
 /// A drum about z whose corners lie on its rims.
-inline TriangleSurface prism(double radius, double length, int sides) {
-  TriangleSurface s;
+inline geometry::TriangleSurface prism(double radius, double length, int sides) {
+  geometry::TriangleSurface s;
   for (int k = 0; k < sides; ++k) {
     const double u = 2.0 * std::numbers::pi * k / sides;
     for (const double z : {-0.5 * length, 0.5 * length})

@@ -30,7 +30,7 @@ inline int run_page_examples(const std::string& page) {
     at = end + close.size();
     if (!text.starts_with("format: 1\n")) continue;
     SCOPED_TRACE(text);
-    Simulation s(read_model_text(text, "page.yaml", {"output.hdf5=false"}));
+    Simulation s(io::read_model_text(text, "page.yaml", {"output.hdf5=false"}));
     const RunSummary summary = s.run();
     EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
     EXPECT_LT(summary.energy_drift, 1e-10);

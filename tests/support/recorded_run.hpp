@@ -15,7 +15,7 @@ namespace polhode::test {
 /// Runs a simulation to its end and writes the results of the command line into a folder.
 inline RunSummary recorded_run(Simulation& simulation, const std::string& folder,
                                bool restarted = false) {
-  Recorder recorder(simulation, folder, {}, restarted);
+  io::Recorder recorder(simulation, folder, {}, restarted);
   recorder.step(simulation);
   RunSummary summary = simulation.run([&](Simulation& s) { recorder.frame(s); },
                                       [&](Simulation& s) { recorder.step(s); });
@@ -26,7 +26,7 @@ inline RunSummary recorded_run(Simulation& simulation, const std::string& folder
 
 /// Numbers of a probe's file, without its header; other entries are read as zero.
 inline std::vector<std::vector<double>> csv_rows(const std::string& path) {
-  std::istringstream lines(read_file(path));
+  std::istringstream lines(io::read_file(path));
   std::vector<std::vector<double>> all;
   std::string line, cell;
   std::getline(lines, line);

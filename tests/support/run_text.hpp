@@ -12,8 +12,8 @@
 namespace polhode::test {
 
 /// The simulation of a model file's text.
-inline Simulation made(const std::string& text, const Overrides& overrides = {}) {
-  return Simulation(read_model_text(text, "model.yaml", overrides));
+inline Simulation made(const std::string& text, const io::Overrides& overrides = {}) {
+  return Simulation(io::read_model_text(text, "model.yaml", overrides));
 }
 
 /// Runs a simulation to its end; it fails the test otherwise.

@@ -11,7 +11,7 @@ namespace polhode::test {
 /// Sizes for any kind of shape: as many of the lengths as it has, in the first permutation that it
 /// accepts.
 /// @param lengths  All different [m]; at least as many as sizes.
-[[nodiscard]] inline std::vector<double> fitting_sizes(const ShapeKind& kind,
+[[nodiscard]] inline std::vector<double> fitting_sizes(const geometry::ShapeKind& kind,
                                                        std::vector<double> lengths) {
   lengths.resize(kind.sizes.size());
   const std::vector<double> first = lengths;

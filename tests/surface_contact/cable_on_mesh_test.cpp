@@ -20,7 +20,7 @@ constexpr double kTolerance = 0.2, kRadius = 0.6;
 /// Nodes of 2 × 2 quadrilaterals with a valley along the middle line, followed by three nodes of a
 /// cable along that line.
 struct Scene : MovingNodes {
-  LoadedFaces faces{"quad4", {}};
+  solids::LoadedFaces faces{"quad4", {}};
 };
 
 /// @param depth   Of the valley; below zero it is a ridge.
@@ -49,12 +49,12 @@ Scene scene(unsigned seed, double rho_inf, double depth, double height, double w
   return s;
 }
 
-SolidContact contact_of(const Scene& s, double mu, double end_share = 0.0) {
-  std::vector<MeshPoint> points;
-  RoundLine line;
+surface_contact::SolidContact contact_of(const Scene& s, double mu, double end_share = 0.0) {
+  std::vector<surface_contact::MeshPoint> points;
+  surface_contact::RoundLine line;
   line.radius = kRadius;
   for (int k = 0; k < 5; ++k) {
-    MeshPoint& p = points.emplace_back();
+    surface_contact::MeshPoint& p = points.emplace_back();
     const int piece = 9 + std::min(k / 2, 1);
     const double part = 0.5 * (k - 2 * (piece - 9));
     p.add(piece, 1.0 - part);
@@ -65,9 +65,9 @@ SolidContact contact_of(const Scene& s, double mu, double end_share = 0.0) {
   const std::vector<int> carriers(s.X.size(), kFreeNode);
   return {"c",
           std::move(points),
-          triangulated({s.faces}),
+          surface_contact::triangulated({s.faces}),
           soft_law(kTolerance, mu, end_share),
-          SolidContactStart{.X = s.X, .carriers = carriers, .edge = 3.0},
+          surface_contact::SolidContactStart{.X = s.X, .carriers = carriers, .edge = 3.0},
           std::move(line)};
 }
 
@@ -87,7 +87,7 @@ TEST(CableOnMesh, HasTheTangentOfItsForces) {
           SCOPED_TRACE(testing::Message()
                        << place.depth << " " << rho_inf << " " << mu << " " << seed);
           const Scene s = scene(seed, rho_inf, place.depth, place.height, 0.03);
-          const SolidContact contact = contact_of(s, mu, mu == 0.0 ? 0.5 : 0.0);
+          const surface_contact::SolidContact contact = contact_of(s, mu, mu == 0.0 ? 0.5 : 0.0);
           const std::vector<double> history = bristles(contact, s, seed);
           ASSERT_GT(forces(contact, s, history).norm(), 1e-2);
           expect_derivative(
@@ -111,7 +111,7 @@ TEST(CableOnMesh, BalancesWorkAndEnergyAndKeepsMomenta) {
         for (const unsigned seed : {1U, 2U, 3U, 4U}) {
           SCOPED_TRACE(testing::Message() << place.depth << " " << way << " " << mu << " " << seed);
           const Scene s = scene(seed, 1.0, place.depth, place.height, way);
-          const SolidContact contact = contact_of(s, mu);
+          const surface_contact::SolidContact contact = contact_of(s, mu);
           std::vector<double> history = bristles(contact, s, seed);
           std::vector<double> clearances;
           contact.clearances(s.step(), history.data(), clearances);
@@ -135,7 +135,7 @@ TEST(CableOnMesh, BalancesWorkAndEnergyAndKeepsMomenta) {
           EXPECT_LT(sum.norm(), 1e-12 * (1.0 + f.norm()));
           EXPECT_LT(moment.norm(), 1e-12 * (1.0 + f.norm()));
           contact.commit(s.step(), history.data(), nullptr);
-          const SurfaceReport report = contact.report(history.data());
+          const surface_contact::SurfaceReport report = contact.report(history.data());
           EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-12 * size);
           EXPECT_LT((report.force - on_cable).norm(), 1e-12 * (1.0 + f.norm()));
           still.x_n = s.x_n1;

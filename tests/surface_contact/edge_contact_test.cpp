@@ -18,7 +18,7 @@ constexpr double kTolerance = 0.1;
 /// A line of three pieces along x and one of two pieces above, across it.
 struct Scene {
   std::vector<Vec3> X;
-  EdgeLines first, second;
+  surface_contact::EdgeLines first, second;
   std::vector<double> x_n, x_n1, u;
   std::vector<int> carriers;
   StepContext context = context_of(1.0);
@@ -34,8 +34,8 @@ struct Scene {
     x_n1[k] += by;
     u[k] += by;
   }
-  [[nodiscard]] EdgeContact contact(double mu, bool self = false) const {
-    SurfaceLaw law;
+  [[nodiscard]] surface_contact::EdgeContact contact(double mu, bool self = false) const {
+    surface_contact::SurfaceLaw law;
     law.normal.tolerance = kTolerance;
     law.normal.stiffness = 30.0;
     law.mu = mu;
@@ -43,7 +43,8 @@ struct Scene {
     return {"c",
             {first, self ? first : second, 0.7},
             law,
-            SolidContactStart{.X = X, .carriers = carriers, .edge = 3.0, .self = self}};
+            surface_contact::SolidContactStart{
+                .X = X, .carriers = carriers, .edge = 3.0, .self = self}};
   }
   StepContext still = [] {
     StepContext c = context_of(1.0);
@@ -52,8 +53,8 @@ struct Scene {
   }();
 };
 
-EdgeLines line(Scene& s, const std::vector<Vec3>& at) {
-  EdgeLines lines;
+surface_contact::EdgeLines line(Scene& s, const std::vector<Vec3>& at) {
+  surface_contact::EdgeLines lines;
   for (std::size_t k = 0; k < at.size(); ++k) {
     lines.vertices.emplace_back();
     lines.vertices.back().add(static_cast<int>(s.X.size()), 1.0);
@@ -81,14 +82,15 @@ Scene scene(double x, double rough, double way, unsigned seed = 1) {
   return s;
 }
 
-std::vector<double> history_of(const EdgeContact& contact) {
+std::vector<double> history_of(const surface_contact::EdgeContact& contact) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   history.back() = 0.0;  // the whole band, from any initial gap
   return history;
 }
 
-Vec forces(const EdgeContact& contact, const Scene& s, const std::vector<double>& history) {
+Vec forces(const surface_contact::EdgeContact& contact, const Scene& s,
+           const std::vector<double>& history) {
   return forces_over(s.step(), s.x_n.size(), contact, history);
 }
 
@@ -97,7 +99,7 @@ TEST(EdgeContact, HasTheSameEnergyAlongALine) {
   double first = 0.0;
   for (const double x : {0.1, 0.2, 0.4999, 0.5, 0.5001, 0.503, 0.6, -0.5}) {
     const Scene s = scene(x, 0.0, 0.0);
-    const EdgeContact contact = s.contact(0.0);
+    const surface_contact::EdgeContact contact = s.contact(0.0);
     const double stored = contact.work(s.instant(true), history_of(contact).data(), nullptr).stored;
     if (first == 0.0) first = stored;
     EXPECT_NEAR(stored / first, 1.0, 1e-12) << x;
@@ -113,7 +115,7 @@ TEST(EdgeContact, LeavesParallelEdgesToPointContact) {
     for (int c = 0; c < 3; ++c) s.x_n.push_back(X[c]), s.u.push_back(0.0), s.x_n1.push_back(X[c]);
     s.carriers.push_back(kFreeNode);
   }
-  const EdgeContact contact = s.contact(0.3);
+  const surface_contact::EdgeContact contact = s.contact(0.3);
   const std::vector<double> history = history_of(contact);
   EXPECT_EQ(contact.candidates(history.data()), 1);
   EXPECT_EQ(contact.work(s.instant(true), history.data(), nullptr).stored, 0.0);
@@ -127,7 +129,7 @@ TEST(EdgeContact, HasTheTangentOfItsForces) {
     for (const unsigned seed : {1U, 2U, 3U}) {
       SCOPED_TRACE(testing::Message() << mu << " " << seed);
       const Scene s = scene(0.52, 0.04, 0.03, seed);
-      const EdgeContact contact = s.contact(mu);
+      const surface_contact::EdgeContact contact = s.contact(mu);
       const std::vector<double> history = history_of(contact);
       ASSERT_GT(forces(contact, s, history).norm(), 1e-2);
       expect_derivative(
@@ -147,7 +149,7 @@ TEST(EdgeContact, BalancesWorkAndEnergyAndKeepsMomenta) {
     for (const unsigned seed : {1U, 2U, 3U, 4U}) {
       SCOPED_TRACE(testing::Message() << mu << " " << seed);
       Scene s = scene(0.45, 0.04, 0.02, seed);
-      const EdgeContact contact = s.contact(mu);
+      const surface_contact::EdgeContact contact = s.contact(mu);
       std::vector<double> history = history_of(contact);
       Random random(seed + 10);
       double reported = 0.0;
@@ -172,12 +174,12 @@ TEST(EdgeContact, BalancesWorkAndEnergyAndKeepsMomenta) {
         EXPECT_LT(sum.norm(), 1e-12);
         EXPECT_LT(moment.norm(), 1e-12);
         contact.commit(s.step(), history.data(), nullptr);
-        const SurfaceReport r = contact.report(history.data());
+        const surface_contact::SurfaceReport r = contact.report(history.data());
         reported += w.dissipated;
         EXPECT_NEAR(r.friction_loss, reported, 1e-13);
         EXPECT_LT((r.force - on_first).norm(), 1e-12);
         EXPECT_NEAR(contact.work(s.instant(true), history.data(), nullptr).stored, w.stored, 1e-12);
-        const std::vector<SurfacePointReport> points =
+        const std::vector<surface_contact::SurfacePointReport> points =
             contact.point_reports(s.instant(true), history.data());
         EXPECT_FALSE(points.empty());
         s.x_n = s.x_n1;
@@ -191,7 +193,7 @@ TEST(EdgeContact, BalancesWorkAndEnergyAndKeepsMomenta) {
 
 TEST(EdgeContact, LimitsADisplacementThatWouldCross) {
   Scene s = scene(0.2, 0.0, 0.0);
-  const EdgeContact contact = s.contact(0.0);
+  const surface_contact::EdgeContact contact = s.contact(0.0);
   const std::vector<double> history = history_of(contact);
   Scene to = s;
   for (std::size_t i = 4; i < 7; ++i) to.x_n1[3 * i + 2] -= 0.4;  // 0.3 beyond the other line
@@ -210,7 +212,7 @@ TEST(EdgeContact, OfOneLineLeavesOutNeighbours) {
     s.carriers.push_back(kFreeNode);
   }
   s.x_n1 = s.x_n;
-  const EdgeContact contact = s.contact(0.0, true);
+  const surface_contact::EdgeContact contact = s.contact(0.0, true);
   const std::vector<double> history = history_of(contact);
   EXPECT_EQ(contact.candidates(history.data()), 2);  // three pairs are neighbours, one is far away
   s.x_n1[3 * 3 + 2] = s.x_n1[3 * 4 + 2] = 0.1;
@@ -221,17 +223,20 @@ TEST(EdgeContact, OfOneLineLeavesOutNeighbours) {
 TEST(EdgeLines, AreSharpEdgesOfACubeAndTheBorderOfAPlate) {
   std::vector<Vec3> X;
   for (int k = 0; k < 8; ++k) X.emplace_back(k & 1, (k >> 1) & 1, k >> 2);
-  const MeshSurface cube = triangulated(
+  const surface_contact::MeshSurface cube = surface_contact::triangulated(
       {{"quad4", {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5}}});
-  const EdgeLines edges = sharp_edges(cube, X);
+  const surface_contact::EdgeLines edges = surface_contact::sharp_edges(cube, X);
   EXPECT_EQ(edges.edges.size(), 12U);
   EXPECT_EQ(edges.vertices.size(), 8U);
   for (const double part : edges.shared()) EXPECT_DOUBLE_EQ(part, 2.0 / 3.0);
-  EXPECT_EQ(sharp_edges(triangulated({{"quad4", {0, 2, 3, 1}}}), X).edges.size(), 4U);
+  EXPECT_EQ(
+      surface_contact::sharp_edges(surface_contact::triangulated({{"quad4", {0, 2, 3, 1}}}), X)
+          .edges.size(),
+      4U);
   // With reversed orientation the cube is a cavity without convex edges.
-  const MeshSurface hollow = triangulated(
+  const surface_contact::MeshSurface hollow = surface_contact::triangulated(
       {{"quad4", {1, 3, 2, 0, 6, 7, 5, 4, 4, 5, 1, 0, 3, 7, 6, 2, 2, 6, 4, 0, 5, 7, 3, 1}}});
-  EXPECT_TRUE(sharp_edges(hollow, X).edges.empty());
+  EXPECT_TRUE(surface_contact::sharp_edges(hollow, X).edges.empty());
 }
 
 }  // namespace

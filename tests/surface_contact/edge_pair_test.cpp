@@ -14,17 +14,19 @@ namespace {
 
 constexpr double kTolerance = 0.2;
 
-SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
+surface_contact::SurfaceLaw law(double mu, double end_share = 0.0) {
+  return soft_law(kTolerance, mu, end_share);
+}
 
 enum class Place { crossing, end_over_edge, ends, nearly_parallel };
 
 struct Scene {
-  FourMoves moves;
-  EdgePairData data;
+  surface_contact::FourMoves moves;
+  surface_contact::EdgePairData data;
   double alpha = 0.5;
   bool conserving = true;
 
-  [[nodiscard]] EdgePair pair(const SurfaceLaw& law) const {
+  [[nodiscard]] surface_contact::EdgePair pair(const surface_contact::SurfaceLaw& law) const {
     return {moves, data, law, alpha, conserving};
   }
   void move(int k, double by) {
@@ -57,13 +59,13 @@ Scene scene(Place place, unsigned seed, double way, double alpha = 0.5) {
   return s;
 }
 
-double at_instant(const Scene& s, const SurfaceLaw& law, bool end) {
+double at_instant(const Scene& s, const surface_contact::SurfaceLaw& law, bool end) {
   Scene still = s;
   for (int k = 0; k < 4; ++k) {
     if (!end) still.moves.x_n1[k] -= s.moves.u[k];
     still.moves.u[k].setZero();
   }
-  return EdgePair(still.moves, s.data, law, 1.0, true).stored();
+  return surface_contact::EdgePair(still.moves, s.data, law, 1.0, true).stored();
 }
 
 const Place kPlaces[] = {Place::crossing, Place::end_over_edge, Place::ends,
@@ -76,8 +78,8 @@ TEST(EdgePair, HasTheTangentOfItsForces) {
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << alpha << " " << seed);
         const Scene s = scene(place, seed, 0.05, alpha);
-        const SurfaceLaw l = law(0.0, 0.3);
-        const EdgePair pair = s.pair(l);
+        const surface_contact::SurfaceLaw l = law(0.0, 0.3);
+        const surface_contact::EdgePair pair = s.pair(l);
         ASSERT_TRUE(pair.acts());
         ASSERT_GT(pair.force().norm(), 1e-3);
         const auto moved = [&](const Vec& d) {
@@ -102,11 +104,11 @@ TEST(EdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
       for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << way << " " << seed);
         const Scene s = scene(place, seed, way);
-        const SurfaceLaw l = law(0.0);
-        const EdgePair pair = s.pair(l);
+        const surface_contact::SurfaceLaw l = law(0.0);
+        const surface_contact::EdgePair pair = s.pair(l);
         if (!pair.acts()) continue;
         ++acting;
-        const EdgePair::Force f = pair.force();
+        const surface_contact::EdgePair::Force f = pair.force();
         double work = 0.0;
         Vec3 sum = Vec3::Zero(), moment = Vec3::Zero(), x[4];
         s.moves.at(0.5, x);
@@ -133,11 +135,11 @@ TEST(EdgePair, HasFrictionWithoutResultantThatDissipatesItsWork) {
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << mu << " " << seed);
         const Scene s = scene(place, seed, 0.05);
-        const SurfaceLaw l = law(mu);
-        const EdgePair pair = s.pair(l);
+        const surface_contact::SurfaceLaw l = law(mu);
+        const surface_contact::EdgePair pair = s.pair(l);
         ASSERT_GT(pair.pressure(), 0.0);
         const Vec3 kept = Random(seed + 7).vector(0.03);
-        const FourSlide slide = pair.slide(kept, true);
+        const surface_contact::FourSlide slide = pair.slide(kept, true);
         double work = 0.0;
         Vec3 sum = Vec3::Zero(), moment = Vec3::Zero(), x[4];
         s.moves.at(0.5, x);
@@ -173,8 +175,8 @@ TEST(EdgePair, DoesNotSlipInRigidRotations) {
     s.moves.x_n1[k] = half * middle[k];
     s.moves.u[k] = s.moves.x_n1[k] - x_n;
   }
-  const SurfaceLaw l = law(1.0);
-  const FourSlide slide = s.pair(l).slide(Vec3::Zero(), false);
+  const surface_contact::SurfaceLaw l = law(1.0);
+  const surface_contact::FourSlide slide = s.pair(l).slide(Vec3::Zero(), false);
   EXPECT_LT(slide.slid.norm(), 1e-10);
   // The second edge moves along itself, so its material slides over the nearest point of the first
   // one.

@@ -11,11 +11,12 @@ namespace {
 
 // @tests{surface-start}
 TEST(PointBand, BeginsAtTheInitialGapOfAPoint) {
-  SurfaceLaw law;
+  surface_contact::SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
   for (const double start : {1.9e-4, 1e-4, 0.0, -1e-4, -1.79e-4}) {
-    const contact::NormalLaw own = beginning_later(law, lowered_for(law, start)).normal;
+    const contact::NormalLaw own =
+        surface_contact::beginning_later(law, surface_contact::lowered_for(law, start)).normal;
     EXPECT_NEAR(own.reach(), start, 1e-18);
     EXPECT_EQ(own.floor(), -2e-4);
     EXPECT_NEAR(own.energy(start), 0.0, 1e-30);
@@ -23,19 +24,21 @@ TEST(PointBand, BeginsAtTheInitialGapOfAPoint) {
     EXPECT_NEAR(own.force(deeper), law.normal.force(deeper) - law.normal.force(start),
                 1e-12 * law.normal.force(deeper));
   }
-  EXPECT_NEAR(beginning_later(law, lowered_for(law, -1.99e-4)).normal.reach(), -2e-4 + 0.05 * 4e-4,
-              1e-18)
+  EXPECT_NEAR(surface_contact::beginning_later(law, surface_contact::lowered_for(law, -1.99e-4))
+                  .normal.reach(),
+              -2e-4 + 0.05 * 4e-4, 1e-18)
       << "a twentieth of the gap remains";
 }
 
 // @tests{surface-start}
 TEST(PointBand, OfAMeshEndsAtTheInitialGap) {
-  SurfaceLaw law;
+  surface_contact::SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
   const double middle = law.normal.force(0.0);
   for (const double start : {1.9e-4, 1e-4, 0.0, -1e-4, -1.79e-4}) {
-    const contact::NormalLaw own = with_band_lowered(law, lowered_for(law, start)).normal;
+    const contact::NormalLaw own =
+        surface_contact::with_band_lowered(law, surface_contact::lowered_for(law, start)).normal;
     EXPECT_NEAR(own.reach(), start, 1e-18);
     EXPECT_EQ(own.floor(), -2e-4);
     EXPECT_NEAR(own.energy(start), 0.0, 1e-30);
@@ -44,30 +47,30 @@ TEST(PointBand, OfAMeshEndsAtTheInitialGap) {
 }
 
 TEST(PointBand, IsUnchangedForPointsThatStartOutsideIt) {
-  SurfaceLaw law;
-  EXPECT_EQ(lowered_for(law, law.normal.reach()), 0.0);
-  EXPECT_EQ(lowered_for(law, std::numeric_limits<double>::infinity()), 0.0);
-  EXPECT_EQ(lowered_for(law, std::nan("")), 0.0) << "nothing is near";
-  EXPECT_EQ(with_band_lowered(law, 0.0).normal.stiffness, law.normal.stiffness);
-  EXPECT_FALSE(beginning_later(law, 0.0).normal.later);
+  surface_contact::SurfaceLaw law;
+  EXPECT_EQ(surface_contact::lowered_for(law, law.normal.reach()), 0.0);
+  EXPECT_EQ(surface_contact::lowered_for(law, std::numeric_limits<double>::infinity()), 0.0);
+  EXPECT_EQ(surface_contact::lowered_for(law, std::nan("")), 0.0) << "nothing is near";
+  EXPECT_EQ(surface_contact::with_band_lowered(law, 0.0).normal.stiffness, law.normal.stiffness);
+  EXPECT_FALSE(surface_contact::beginning_later(law, 0.0).normal.later);
   law.normal.potential = contact::NormalPotential::linear;
-  EXPECT_EQ(lowered_for(law, -1e-3), 0.0) << "overlaps are allowed";
+  EXPECT_EQ(surface_contact::lowered_for(law, -1e-3), 0.0) << "overlaps are allowed";
 }
 
 // @tests{surface-turn}
 TEST(PointBand, KeepsTheEnergyOfTheRebound) {
-  SurfaceLaw law;
+  surface_contact::SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
   for (const double e : {0.0, 0.3, 0.9})
     for (const double gap : {1.5e-4, 0.0, -1.9e-4}) {
       law.end_share = 0.5 * (1.0 - e);
-      PointPhase p = PointPhase{}.in_step(law, 3e-4, -1.0);
+      surface_contact::PointPhase p = surface_contact::PointPhase{}.in_step(law, 3e-4, -1.0);
       EXPECT_TRUE(p.is(contact::ContactPhase::compression));
       EXPECT_EQ(p.law(law).end_share, e == 0.0 ? 1.0 : 0.0);
       p = p.at_end(law, gap);
       const double before = law.normal.energy(gap), released = p.turn(law, gap, 0.0),
-                   after = beginning_later(law, p.lowered).normal.energy(gap);
+                   after = surface_contact::beginning_later(law, p.lowered).normal.energy(gap);
       EXPECT_NEAR(after, e * e * before, 1e-9 * before) << e << ", " << gap;
       EXPECT_NEAR(released + after, before, 1e-12 * before);
       EXPECT_TRUE(p.is(e > 0.0 ? contact::ContactPhase::restitution : contact::ContactPhase::rest));
@@ -76,16 +79,16 @@ TEST(PointBand, KeepsTheEnergyOfTheRebound) {
 
 // @tests{surface-held}
 TEST(PointBand, BalancesTheLoadOnItAfterCompression) {
-  SurfaceLaw law;
+  surface_contact::SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
   law.end_share = 0.5;  // no rebound
   for (const double gap : {1.5e-4, 0.0, -1.9e-4})
     for (const double part : {0.01, 0.5, 0.99, 1.0, 3.0}) {
-      PointPhase p = PointPhase{}.in_step(law, 3e-4, -1.0);
+      surface_contact::PointPhase p = surface_contact::PointPhase{}.in_step(law, 3e-4, -1.0);
       const double force = law.normal.force(gap), before = law.normal.energy(gap),
                    released = p.turn(law, gap, part * force);
-      const contact::NormalLaw after = beginning_later(law, p.lowered).normal;
+      const contact::NormalLaw after = surface_contact::beginning_later(law, p.lowered).normal;
       EXPECT_NEAR(after.force(gap), std::min(1.0, part) * force, 1e-9 * force) << part;
       EXPECT_NEAR(released + after.energy(gap), before, 1e-12 * before);
       EXPECT_GE(released, 0.0);
@@ -93,14 +96,15 @@ TEST(PointBand, BalancesTheLoadOnItAfterCompression) {
 }
 
 TEST(PointBand, BeginsAnImpactOnlyIfItClosesFromOutside) {
-  SurfaceLaw law;
+  surface_contact::SurfaceLaw law;
   law.mu = law.end_share = 0.5;  // no rebound
   const double reach = law.normal.reach();
-  EXPECT_TRUE(PointPhase{}.in_step(law, reach, -1e-9).in_impact());
-  EXPECT_FALSE(PointPhase{}.in_step(law, reach, 0.0).in_impact()) << "no approach";
-  EXPECT_FALSE(PointPhase{}.in_step(law, 0.5 * reach, -1.0).in_impact())
+  EXPECT_TRUE(surface_contact::PointPhase{}.in_step(law, reach, -1e-9).in_impact());
+  EXPECT_FALSE(surface_contact::PointPhase{}.in_step(law, reach, 0.0).in_impact()) << "no approach";
+  EXPECT_FALSE(surface_contact::PointPhase{}.in_step(law, 0.5 * reach, -1.0).in_impact())
       << "it starts within the band";
-  PointPhase p = PointPhase{}.in_step(law, reach, -1.0).at_end(law, 0.0);
+  surface_contact::PointPhase p =
+      surface_contact::PointPhase{}.in_step(law, reach, -1.0).at_end(law, 0.0);
   EXPECT_EQ(p.law(law).mu, 0.0) << "friction is an impulse";
   p.turn(law, 0.0, 0.0);
   EXPECT_EQ(p.law(law).mu, 0.5);

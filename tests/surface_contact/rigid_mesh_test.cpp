@@ -21,14 +21,14 @@ contact::NormalLaw band(double tolerance) {
 }
 
 /// Hills and valleys on a grid of 9 × 9 points at distances of 1, no steeper than 1:1.
-contact::Shape hills(double rounding) {
+geometry::Shape hills(double rounding) {
   std::vector<double> heights;
   for (int i = 0; i < 81; ++i) heights.push_back(0.4 * std::sin(2.3 * i) + 0.1 * std::cos(7.0 * i));
-  return contact::height_field("hills", 9, 1.0, heights, {}, rounding);
+  return geometry::height_field("hills", 9, 1.0, heights, {}, rounding);
 }
 
-RigidMesh ring(double rounding) {
-  return RigidMesh(contact::mesh("ring", torus(3.5, 1.5), {}, rounding));
+surface_contact::RigidMesh ring(double rounding) {
+  return surface_contact::RigidMesh(geometry::mesh("ring", torus(3.5, 1.5), {}, rounding));
 }
 
 TEST(NormalLaw, FindsTheGapOfAnEnergy) {
@@ -52,10 +52,10 @@ TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
   const double rho = 0.05;
   // Corners of a flat field, moved in the plane, so that triangles are of all shapes.
   Random random(7);
-  contact::Shape shape =
-      contact::height_field("flat", 9, 1.0, std::vector<double>(81, 0.0), {}, rho);
+  geometry::Shape shape =
+      geometry::height_field("flat", 9, 1.0, std::vector<double>(81, 0.0), {}, rho);
   for (Vec3& x : shape.corners) x.head<2>() += 0.3 * Vec3(random.vector()).head<2>();
-  const RigidMesh field(shape);
+  const surface_contact::RigidMesh field(shape);
   const contact::NormalLaw law = band(0.3);
   const double radii[] = {0.0, 0.4, 2.5};  // of a ball about the point, to larger than triangles
   for (int k = 0; k < 3000; ++k) {
@@ -67,7 +67,7 @@ TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
     y[2] = 0.25 * random.number();
     if (y[2] < -rho) y[2] += 0.3;
     y[2] += radius;
-    const SurfaceGap g = field.gap(y, {law, 100.0, false, radius});
+    const surface_contact::SurfaceGap g = field.gap(y, {law, 100.0, false, radius});
     EXPECT_NEAR(g.value, y[2] - radius, 1e-13);
     EXPECT_LT((g.normal - Vec3::UnitZ()).norm(), 1e-10) << y.transpose();
     EXPECT_LT(g.curvature.norm(), 1e-8);
@@ -77,15 +77,16 @@ TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
 
 /// Gap of a box of triangles: that of the box, at its faces, edges and corners.
 TEST(RigidMesh, AgreesWithTheBoxOfItsTriangles) {
-  using enum RigidSurface::Kind;
+  using enum surface_contact::RigidSurface::Kind;
   const double rho = 0.2;
-  const RigidSurface plain{.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = rho};
+  const surface_contact::RigidSurface plain{.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = rho};
   std::vector<Vec3> corners;
   for (int k = 0; k < 8; ++k)
     corners.emplace_back(k & 1 ? 2.0 : -2.0, k & 2 ? 3.0 : -3.0, k & 4 ? 2.5 : -2.5);
-  const RigidSurface meshed{.kind = mesh,
-                            .triangles = std::make_shared<RigidMesh>(contact::mesh(
-                                "box", contact::convex_hull("box", corners), {}, rho))};
+  const surface_contact::RigidSurface meshed{
+      .kind = mesh,
+      .triangles = std::make_shared<surface_contact::RigidMesh>(
+          geometry::mesh("box", geometry::convex_hull("box", corners), {}, rho))};
   const contact::NormalLaw law = band(rho);
   Random random(41);
   for (int k = 0; k < 4000; ++k) {
@@ -95,8 +96,8 @@ TEST(RigidMesh, AgreesWithTheBoxOfItsTriangles) {
     if (k % 2 == 0) y = 1.02 * y.cwiseQuotient(y.cwiseAbs()).cwiseProduct(half);
     if (k % 4 == 0) y[k % 3] *= 0.7;
     const bool within = plain.distance(y) < -rho;
-    const SurfaceGap g = plain.gap(y, {law, 100.0, false, radius}),
-                     h = meshed.gap(y, {law, 100.0, within, radius});
+    const surface_contact::SurfaceGap g = plain.gap(y, {law, 100.0, false, radius}),
+                                      h = meshed.gap(y, {law, 100.0, within, radius});
     ASSERT_NEAR(g.value, h.value, 1e-13) << y.transpose();
     if (within) continue;
     EXPECT_LT((g.normal - h.normal).norm(), 1e-10) << y.transpose();
@@ -113,7 +114,8 @@ TEST(RigidMesh, ConvergesToACylinderWithSecondOrder) {
   for (const double radius : {0.0, 0.3, 2.0}) {
     double coarse = 0.0;
     for (const int sides : {16, 32, 64, 128}) {
-      const RigidMesh drum(contact::mesh("drum", prism(1.0, 3.0, sides), {}, 1e-3));
+      const surface_contact::RigidMesh drum(
+          geometry::mesh("drum", prism(1.0, 3.0, sides), {}, 1e-3));
       double worst = 0.0;
       for (int k = 0; k < 500; ++k) {
         const double u = 0.1 + 0.006 * k, d = 1.0 + radius;
@@ -132,7 +134,8 @@ TEST(RigidMesh, ConvergesToACylinderWithSecondOrder) {
 
 /// Points within the band over a rough surface, many of them near several features.
 template <class What>
-void for_points(const RigidMesh& mesh, const GapQuery& query, What&& what) {
+void for_points(const surface_contact::RigidMesh& mesh, const surface_contact::GapQuery& query,
+                What&& what) {
   const contact::NormalLaw& law = query.law;
   Random random(23);
   int found = 0;
@@ -150,11 +153,12 @@ void for_points(const RigidMesh& mesh, const GapQuery& query, What&& what) {
 TEST(RigidMesh, HasTheDerivativesOfItsGap) {
   const contact::NormalLaw law = band(0.2);
   for (const double radius : {0.0, 0.9}) {
-    const GapQuery query{law, 100.0, false, radius};
-    for (const RigidMesh& mesh : {RigidMesh(hills(0.2)), ring(0.2)}) {
+    const surface_contact::GapQuery query{law, 100.0, false, radius};
+    for (const surface_contact::RigidMesh& mesh :
+         {surface_contact::RigidMesh(hills(0.2)), ring(0.2)}) {
       double several = 0.0;
       for_points(mesh, query, [&](const Vec3& y) {
-        const SurfaceGap g = mesh.gap(y, query);
+        const surface_contact::SurfaceGap g = mesh.gap(y, query);
         several = std::max(several, mesh.distance(y, 4.0, false) - radius - g.value);
         const auto value = [&](const Vec& d) -> Vec {
           return Vec::Constant(1, mesh.gap(Vec3(y + Vec3(d)), query).value);
@@ -173,8 +177,8 @@ TEST(RigidMesh, HasTheDerivativesOfItsGap) {
 
 /// Along a path at a distance, the change of energy is the work of the force. @returns the largest
 /// energy.
-double expect_work(const RigidMesh& mesh, const GapQuery& query, const Vec3& from, const Vec3& to,
-                   double height, int n = 4000) {
+double expect_work(const surface_contact::RigidMesh& mesh, const surface_contact::GapQuery& query,
+                   const Vec3& from, const Vec3& to, double height, int n = 4000) {
   const contact::NormalLaw& law = query.law;
   const auto over = [&](double part) {
     Vec3 y = from + part * (to - from);
@@ -183,12 +187,12 @@ double expect_work(const RigidMesh& mesh, const GapQuery& query, const Vec3& fro
     return y;
   };
   Vec3 y = over(0.0);
-  SurfaceGap g = mesh.gap(y, query);
+  surface_contact::SurfaceGap g = mesh.gap(y, query);
   double energy = law.energy(g.value), work = 0.0, most = 0.0;
   const double start = energy;
   for (int i = 1; i <= n; ++i) {
     const Vec3 next = over(i / static_cast<double>(n));
-    const SurfaceGap h = mesh.gap(next, query);
+    const surface_contact::SurfaceGap h = mesh.gap(next, query);
     const Vec3 f = 0.5 * (law.force_and_slope(g.value).value * g.normal +
                           law.force_and_slope(h.value).value * h.normal);
     work -= f.dot(next - y);
@@ -204,7 +208,7 @@ double expect_work(const RigidMesh& mesh, const GapQuery& query, const Vec3& fro
 /// Energy without jumps along a path. @tests{surface-feature-sum}
 TEST(RigidMesh, DoesWorkEqualToItsChangeOfEnergy) {
   const contact::NormalLaw law = band(0.2);
-  const RigidMesh mesh(hills(0.2));
+  const surface_contact::RigidMesh mesh(hills(0.2));
   for (const double radius : {0.0, 0.6}) {
     Random random(3);
     double most = 0.0;
@@ -221,8 +225,8 @@ TEST(RigidMesh, DoesWorkEqualToItsChangeOfEnergy) {
 /// that of the nearest feature, and the energy has no jumps. @tests{surface-feature-holes}
 TEST(RigidMesh, StopsABallWiderThanAHole) {
   const contact::NormalLaw law = band(0.2);
-  const RigidMesh mesh(contact::mesh("ring", torus(3.5, 1.5, 400), {}, 0.2));
-  const GapQuery query{law, 100.0, false, 2.3};
+  const surface_contact::RigidMesh mesh(geometry::mesh("ring", torus(3.5, 1.5, 400), {}, 0.2));
+  const surface_contact::GapQuery query{law, 100.0, false, 2.3};
   Random random(9);
   int acted = 0;
   for (int k = 0; k < 500; ++k) {
@@ -238,7 +242,7 @@ TEST(RigidMesh, StopsABallWiderThanAHole) {
 }
 
 TEST(RigidMesh, DistinguishesInsideFromOutside) {
-  const RigidMesh mesh = ring(0.1);
+  const surface_contact::RigidMesh mesh = ring(0.1);
   const contact::NormalLaw law = band(0.1);
   Random random(2);
   int within = 0;
@@ -253,7 +257,7 @@ TEST(RigidMesh, DistinguishesInsideFromOutside) {
   }
   EXPECT_GT(within, 200);
 
-  const RigidMesh field(hills(0.1));
+  const surface_contact::RigidMesh field(hills(0.1));
   EXPECT_LT(field.distance({0.3, 0.4, -2.0}, 100.0, true), -1.0) << "a point below";
   EXPECT_GT(field.distance({0.3, 0.4, 2.0}, 100.0, true), 1.0);
   EXPECT_GT(field.distance({4.5, 0.4, -2.0}, 100.0, true), 1.0) << "a point beside";

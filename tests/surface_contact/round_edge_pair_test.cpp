@@ -14,18 +14,20 @@ namespace {
 
 constexpr double kRadii = 0.2, kTolerance = 0.04;
 
-SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
+surface_contact::SurfaceLaw law(double mu, double end_share = 0.0) {
+  return soft_law(kTolerance, mu, end_share);
+}
 
 enum class Place { crossing, between, along, against, end_over_edge };
 const Place kPlaces[] = {Place::crossing, Place::between, Place::along, Place::against,
                          Place::end_over_edge};
 
 struct Scene {
-  FourMoves moves;
-  EdgePairData data;
+  surface_contact::FourMoves moves;
+  surface_contact::EdgePairData data;
   double alpha = 0.5;
 
-  [[nodiscard]] EdgePair pair(const SurfaceLaw& law) const {
+  [[nodiscard]] surface_contact::EdgePair pair(const surface_contact::SurfaceLaw& law) const {
     return {moves, data, law, alpha, true};
   }
   void move(int k, double by) {
@@ -34,8 +36,8 @@ struct Scene {
   }
 };
 
-EdgePairData data() {
-  EdgePairData d;
+surface_contact::EdgePairData data() {
+  surface_contact::EdgePairData d;
   const double shared[4] = {0.0, 0.5, 0.5, 0.5};
   std::copy_n(shared, 4, d.shared);
   d.squares = 1.0;
@@ -70,13 +72,13 @@ Scene scene(Place place, unsigned seed, double way, double alpha = 0.5) {
   return s;
 }
 
-double stored(const Scene& s, const SurfaceLaw& law, bool end) {
+double stored(const Scene& s, const surface_contact::SurfaceLaw& law, bool end) {
   Scene still = s;
   for (int k = 0; k < 4; ++k) {
     if (!end) still.moves.x_n1[k] -= s.moves.u[k];
     still.moves.u[k].setZero();
   }
-  return EdgePair(still.moves, s.data, law, 1.0, true).stored();
+  return surface_contact::EdgePair(still.moves, s.data, law, 1.0, true).stored();
 }
 
 struct Resultant {
@@ -101,8 +103,8 @@ TEST(RoundEdgePair, HasTheTangentOfItsForces) {
       for (const unsigned seed : {1U, 2U, 3U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << alpha << " " << seed);
         const Scene s = scene(place, seed, 0.01, alpha);
-        const SurfaceLaw l = law(0.0, 0.3);
-        const EdgePair pair = s.pair(l);
+        const surface_contact::SurfaceLaw l = law(0.0, 0.3);
+        const surface_contact::EdgePair pair = s.pair(l);
         ASSERT_GT(pair.force().norm(), 1e-3);
         const auto moved = [&](const Vec& d) {
           Scene to = s;
@@ -128,8 +130,8 @@ TEST(RoundEdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
       for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << way << " " << seed);
         const Scene s = scene(place, seed, way);
-        const SurfaceLaw l = law(0.0);
-        const EdgePair pair = s.pair(l);
+        const surface_contact::SurfaceLaw l = law(0.0);
+        const surface_contact::EdgePair pair = s.pair(l);
         if (!pair.acts()) continue;
         const double e_n = stored(s, l, false), e_n1 = stored(s, l, true);
         if (!std::isfinite(e_n) || !std::isfinite(e_n1)) continue;  // beyond the barrier
@@ -147,8 +149,10 @@ TEST(RoundEdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
 /// Choice of the two potentials: for crossing edges the potential of points is zero, although
 /// points are as near.
 TEST(RoundEdgePair, UsesEdgesWhereTheyCrossAndPointsElsewhere) {
-  const SurfaceLaw l = law(0.0);
-  const auto along = [&](const EdgePair& p) { return p.pressure() - p.pressure_across(); };
+  const surface_contact::SurfaceLaw l = law(0.0);
+  const auto along = [&](const surface_contact::EdgePair& p) {
+    return p.pressure() - p.pressure_across();
+  };
   const Scene cross = scene(Place::crossing, 1, 0.0), lies = scene(Place::along, 1, 0.0),
               between = scene(Place::between, 1, 0.0);
   EXPECT_GT(cross.pair(l).pressure_across(), 0.1);
@@ -162,7 +166,7 @@ TEST(RoundEdgePair, UsesEdgesWhereTheyCrossAndPointsElsewhere) {
 /// Continuity of the energy from parallel to crossing lines: in a rotation with four times smaller
 /// steps its changes are four times smaller.
 TEST(RoundEdgePair, HasContinuousEnergyAsItTurns) {
-  const SurfaceLaw l = law(0.0);
+  const surface_contact::SurfaceLaw l = law(0.0);
   const auto energy = [&](double angle) {
     Scene s = scene(Place::crossing, 1, 0.0);
     const Vec3 f(std::cos(angle), std::sin(angle), 0.0);
@@ -182,7 +186,7 @@ TEST(RoundEdgePair, HasContinuousEnergyAsItTurns) {
 
 /// Contact of a point with a line of edges: it counts once at every position, also over the nodes.
 TEST(RoundEdgePair, CountsAPointOnceAlongAStraightLineOfEdges) {
-  const SurfaceLaw l = law(0.0);
+  const surface_contact::SurfaceLaw l = law(0.0);
   const auto energy = [&](double shift) {
     double sum = 0.0;
     for (int f = 0; f < 5; ++f) {
@@ -210,9 +214,9 @@ TEST(RoundEdgePair, HasFrictionWithoutResultantAlongEdges) {
       for (const unsigned seed : {1U, 2U, 3U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << mu << " " << seed);
         const Scene s = scene(place, seed, 0.01);
-        const SurfaceLaw l = law(mu);
-        const EdgePair pair = s.pair(l);
-        const LineSlide slide = pair.slide_along(0.002, true);
+        const surface_contact::SurfaceLaw l = law(mu);
+        const surface_contact::EdgePair pair = s.pair(l);
+        const surface_contact::LineSlide slide = pair.slide_along(0.002, true);
         ASSERT_NE(slide.friction, 0.0);
         const Resultant r(s, slide.force);
         EXPECT_NEAR(r.work, slide.friction * slide.slid, 1e-13);
@@ -248,11 +252,11 @@ TEST(RoundEdgePair, HasFrictionWithoutResultantWhereEdgesCross) {
           s.moves.u[k] = random.vector(0.01);
           s.moves.x_n1[k] = x[k] + random.vector(0.003) + s.moves.u[k];
         }
-        const SurfaceLaw l = law(mu);
-        const EdgePair pair = s.pair(l);
+        const surface_contact::SurfaceLaw l = law(mu);
+        const surface_contact::EdgePair pair = s.pair(l);
         ASSERT_GT(pair.pressure_across(), 0.0);
         const Vec3 kept = random.vector(0.003);
-        const FourSlide slide = pair.slide(kept, true);
+        const surface_contact::FourSlide slide = pair.slide(kept, true);
         const Resultant r(s, slide.force);
         EXPECT_NEAR(r.work, slide.friction.dot(slide.slid), 1e-12);
         EXPECT_LT(r.sum.norm(), 1e-12);
@@ -275,7 +279,7 @@ TEST(RoundEdgePair, HasFrictionWithoutResultantWhereEdgesCross) {
 TEST(RoundEdgePair, SlipsByTheAxialDisplacementAndRollsFreely) {
   for (const Place place : {Place::along, Place::against}) {
     Scene s = scene(place, 4, 0.0);
-    const SurfaceLaw l = law(50.0);
+    const surface_contact::SurfaceLaw l = law(50.0);
     const Vec3 t = (s.moves.x_n1[1] - s.moves.x_n1[0]).normalized();
     Scene drawn = s;
     for (int k = 0; k < 2; ++k) drawn.moves.u[k] += 1e-3 * t, drawn.moves.x_n1[k] += 1e-3 * t;

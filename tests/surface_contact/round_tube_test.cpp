@@ -11,14 +11,15 @@
 namespace polhode::test::round_tube_tests {
 namespace {
 
-RigidSurface::Gap gap_at(const RigidSurface& s, const Vec3& y) {
+surface_contact::RigidSurface::Gap gap_at(const surface_contact::RigidSurface& s, const Vec3& y) {
   const contact::NormalLaw law;
   return s.gap(y, {.law = law});
 }
 
-RigidSurface tube(double outer, double inner, double half_length, double rounding) {
-  RigidSurface s;
-  s.kind = RigidSurface::Kind::tube;
+surface_contact::RigidSurface tube(double outer, double inner, double half_length,
+                                   double rounding) {
+  surface_contact::RigidSurface s;
+  s.kind = surface_contact::RigidSurface::Kind::tube;
   s.radius = outer;
   s.half = Vec3(outer, inner, half_length);
   s.rounding = rounding;
@@ -27,7 +28,7 @@ RigidSurface tube(double outer, double inner, double half_length, double roundin
 
 // @tests{surface-gap}
 TEST(RoundTube, HasTheDistanceOfItsProfile) {
-  const RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
+  const surface_contact::RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
   const auto gap = [&](double rho, double angle, double z) {
     return gap_at(s, {rho * std::cos(angle), rho * std::sin(angle), z}).value;
   };
@@ -45,14 +46,14 @@ TEST(RoundTube, HasTheDistanceOfItsProfile) {
 
 // @tests{surface-gap}
 TEST(RoundTube, HasTheDerivativesOfItsGap) {
-  const RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
+  const surface_contact::RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
   const double h = 1e-6;
   for (const Vec3& y : {Vec3(0.9, 0.8, 0.1), Vec3(0.3, -0.25, 0.2), Vec3(0.1, 0.05, -0.4),
                         Vec3(0.5, 0.6, 0.7), Vec3(-1.0, 0.9, 0.8), Vec3(0.3, 0.1, 0.9)}) {
-    const RigidSurface::Gap g = gap_at(s, y);
+    const surface_contact::RigidSurface::Gap g = gap_at(s, y);
     for (int i = 0; i < 3; ++i) {
-      const RigidSurface::Gap more = gap_at(s, y + h * Vec3::Unit(i)),
-                              less = gap_at(s, y - h * Vec3::Unit(i));
+      const surface_contact::RigidSurface::Gap more = gap_at(s, y + h * Vec3::Unit(i)),
+                                               less = gap_at(s, y - h * Vec3::Unit(i));
       EXPECT_NEAR(g.normal[i], (more.value - less.value) / (2.0 * h), 1e-9) << y.transpose();
       EXPECT_LT((g.curvature.col(i) - (more.normal - less.normal) / (2.0 * h)).norm(), 1e-8)
           << y.transpose();
@@ -64,26 +65,26 @@ TEST(RoundTube, HasTheDerivativesOfItsGap) {
 /// gaps, and its derivatives hold up to the axis.
 // @tests{surface-feature-sum}
 TEST(RoundTube, TouchesAThickCableOnBothSides) {
-  const RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
+  const surface_contact::RigidSurface s = tube(1.0, 0.6, 0.5, 0.01);
   contact::NormalLaw law;
   law.tolerance = 0.02;
   law.stiffness = 1e4;
   const auto ball = [&](const Vec3& y) { return s.gap(y, {.law = law, .radius = 0.59}); };
   for (const Vec3& y : {Vec3(0.004, 0.003, 0.1), Vec3(0.0, 0.006, -0.2), Vec3(1e-5, 0.0, 0.0)}) {
     const double rho = std::hypot(y[0], y[1]), near = 0.01 - rho, far = 0.01 + rho;
-    const RigidSurface::Gap g = ball(y);
+    const surface_contact::RigidSurface::Gap g = ball(y);
     EXPECT_NEAR(law.energy(g.value), law.energy(near) + law.energy(far), 1e-10 * law.energy(near));
     const double h = 1e-7;
     for (int i = 0; i < 3; ++i) {
-      const RigidSurface::Gap more = ball(y + h * Vec3::Unit(i)),
-                              less = ball(y - h * Vec3::Unit(i));
+      const surface_contact::RigidSurface::Gap more = ball(y + h * Vec3::Unit(i)),
+                                               less = ball(y - h * Vec3::Unit(i));
       EXPECT_NEAR(g.normal[i], (more.value - less.value) / (2.0 * h), 1e-6) << y.transpose();
       EXPECT_LT((g.curvature.col(i) - (more.normal - less.normal) / (2.0 * h)).norm(),
                 1e-4 * g.curvature.norm())
           << y.transpose();
     }
   }
-  const RigidSurface::Gap middle = ball(Vec3::Zero());
+  const surface_contact::RigidSurface::Gap middle = ball(Vec3::Zero());
   EXPECT_LT(middle.normal.norm(), 1e-4) << "in the middle both sides balance";
   EXPECT_NEAR(middle.curvature(0, 0) / middle.curvature(1, 1), 1.0, 1e-3);
   // In front of the mouth it touches the rim on both sides.

@@ -19,19 +19,19 @@ constexpr double kTolerance = 0.3;
 /// Nodes of two moving plates of faces: the upper one has the contact points, the lower one the
 /// triangles.
 struct Scene : MovingNodes {
-  std::vector<LoadedFaces> lower, upper;
+  std::vector<solids::LoadedFaces> lower, upper;
   std::vector<int> carriers;
-  [[nodiscard]] SolidContact contact(const SurfaceLaw& law, double edge = 3.0,
-                                     bool cells = false) const {
-    const MeshSurface below = triangulated(lower);
-    return {"c", contact_points("c", upper, X, cells ? &below : nullptr), below, law,
-            SolidContactStart{.X = X, .carriers = carriers, .edge = edge}};
+  [[nodiscard]] surface_contact::SolidContact contact(const surface_contact::SurfaceLaw& law,
+                                                      double edge = 3.0, bool cells = false) const {
+    const surface_contact::MeshSurface below = surface_contact::triangulated(lower);
+    return {"c", surface_contact::contact_points("c", upper, X, cells ? &below : nullptr), below,
+            law, surface_contact::SolidContactStart{.X = X, .carriers = carriers, .edge = edge}};
   }
 };
 
 /// n × n quadrilaterals of a square of the size 2 in the plane z.
-LoadedFaces plate(Scene& s, int n, double z, bool up, const Vec3& shift = Vec3::Zero()) {
-  LoadedFaces faces{"quad4", {}};
+solids::LoadedFaces plate(Scene& s, int n, double z, bool up, const Vec3& shift = Vec3::Zero()) {
+  solids::LoadedFaces faces{"quad4", {}};
   const int first = static_cast<int>(s.X.size());
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i <= n; ++i)
@@ -70,7 +70,9 @@ Scene scene(unsigned seed, double rho_inf, double way = 0.12) {
   return s;
 }
 
-SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
+surface_contact::SurfaceLaw law(double mu, double end_share = 0.0) {
+  return soft_law(kTolerance, mu, end_share);
+}
 
 // @tests{four-point-distance} @tests{central-gap} @tests{mesh-friction}
 TEST(SolidContact, HasTheTangentOfItsForces) {
@@ -79,7 +81,7 @@ TEST(SolidContact, HasTheTangentOfItsForces) {
       for (const unsigned seed : {1U, 2U, 3U}) {
         SCOPED_TRACE(testing::Message() << rho_inf << " " << mu << " " << seed);
         const Scene s = scene(seed, rho_inf);
-        const SolidContact contact = s.contact(law(mu, mu == 0.0 ? 0.5 : 0.0));
+        const surface_contact::SolidContact contact = s.contact(law(mu, mu == 0.0 ? 0.5 : 0.0));
         const std::vector<double> history = bristles(contact, s, seed);
         ASSERT_GT(forces(contact, s, history).norm(), 1e-2);
         expect_derivative(
@@ -100,7 +102,7 @@ TEST(SolidContact, HasTheTangentOfItsForces) {
 TEST(SolidContact, HasContinuousFrictionAcrossTriangles) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Scene s = scene(seed, 1.0);
-    const SolidContact contact = s.contact(law(0.5));
+    const surface_contact::SolidContact contact = s.contact(law(0.5));
     const std::vector<double> history = bristles(contact, s, seed);
     const auto first = 3 * static_cast<std::size_t>(s.upper.front().nodes.front());
     const auto at = [&](double part) {
@@ -129,7 +131,7 @@ TEST(SolidContact, BalancesWorkAndEnergyAndKeepsMomenta) {
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         SCOPED_TRACE(testing::Message() << way << " " << mu << " " << seed);
         const Scene s = scene(seed, 1.0, way);
-        const SolidContact contact = s.contact(law(mu));
+        const surface_contact::SolidContact contact = s.contact(law(mu));
         std::vector<double> history = bristles(contact, s, seed);
         const Vec f = forces(contact, s, history);
         ASSERT_GT(f.norm(), 1e-3);
@@ -149,7 +151,7 @@ TEST(SolidContact, BalancesWorkAndEnergyAndKeepsMomenta) {
         EXPECT_LT(sum.norm(), 1e-12);
         EXPECT_LT(moment.norm(), 1e-12);
         contact.commit(s.step(), history.data(), nullptr);
-        const SurfaceReport report = contact.report(history.data());
+        const surface_contact::SurfaceReport report = contact.report(history.data());
         EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-13);
         Vec3 on_upper = Vec3::Zero();
         for (int i = 9; i < 13; ++i) on_upper += f.segment<3>(3 * i);
@@ -161,7 +163,7 @@ TEST(SolidContact, BalancesWorkAndEnergyAndKeepsMomenta) {
 
 TEST(SolidContact, KeepsMomentaWithNumericalDamping) {
   const Scene s = scene(5, 0.5);
-  const SolidContact contact = s.contact(law(0.3, 0.5));
+  const surface_contact::SolidContact contact = s.contact(law(0.3, 0.5));
   const Vec f = forces(contact, s, bristles(contact, s, 5));
   Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
   for (int i = 0; 3 * i < f.size(); ++i) {
@@ -183,11 +185,11 @@ TEST(SolidContact, LoadsMeshesThatDoNotMatchEvenly) {
   s.upper = {plate(s, 4, 0.05, false)};
   Random random(1);
   settle(s, random, 0.0, 0.0);
-  const SolidContact contact = s.contact(law(0.0), 0.5, true);
+  const surface_contact::SolidContact contact = s.contact(law(0.0), 0.5, true);
   const Vec f = forces(contact, s, with_whole_bands(contact, s));
   const double p = law(0.0).normal.force(0.05 - kTolerance);
   double area = 0.0;
-  for (const MeshPoint& point : contact.points()) area += point.area;
+  for (const surface_contact::MeshPoint& point : contact.points()) area += point.area;
   EXPECT_NEAR(area, 4.0, 1e-13);
   const auto expect = [&](int first, int n, double sign) {
     for (int j = 0; j <= n; ++j)
@@ -208,7 +210,7 @@ TEST(SolidContact, StoresNoEnergyAtItsStartUntilItHasOpened) {
   s.upper = {plate(s, 4, 0.4, false)};  // a third of its tolerance above the middle of the band
   Random random(1);
   settle(s, random, 0.0, 0.0);
-  const SolidContact contact = s.contact(law(0.0), 3.0, true);
+  const surface_contact::SolidContact contact = s.contact(law(0.0), 3.0, true);
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   const auto stored = [&] {
@@ -245,9 +247,9 @@ TEST(SolidContact, StoresNoEnergyAtItsStartUntilItHasOpened) {
 
 TEST(SolidContact, StopsPointsThatWouldPassThrough) {
   Scene s = scene(1, 1.0, 0.0);
-  SurfaceLaw l = law(0.0);
+  surface_contact::SurfaceLaw l = law(0.0);
   l.normal.tolerance = 0.01;
-  const SolidContact contact = s.contact(l, 1000.0);
+  const surface_contact::SolidContact contact = s.contact(l, 1000.0);
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   const auto part = [&](const Vec3& way) {
@@ -262,7 +264,7 @@ TEST(SolidContact, StopsPointsThatWouldPassThrough) {
   EXPECT_GT(most, 0.002);
   EXPECT_LT(most, 0.0045);
   // A displacement beyond the search radius of triangles.
-  const SolidContact near = s.contact(l, 1.0);
+  const surface_contact::SolidContact near = s.contact(l, 1.0);
   std::vector<double> short_sight(near.history_size());
   near.initialize(short_sight.data());
   Scene to = s;
@@ -278,9 +280,9 @@ TEST(SolidContact, ReportsOverlaps) {
     s.upper = {plate(s, 1, z, false)};
     Random random(1);
     settle(s, random, 0.0, 0.0);
-    SurfaceLaw l = law(0.0);
+    surface_contact::SurfaceLaw l = law(0.0);
     l.normal.tolerance = 0.01;
-    const std::optional<SurfaceOverlap> found = s.contact(l).overlap(s.start());
+    const std::optional<surface_contact::SurfaceOverlap> found = s.contact(l).overlap(s.start());
     ASSERT_EQ(found.has_value(), z < 0.01) << z;
     if (!found) continue;
     EXPECT_NEAR(found->depth, -z, 1e-12);

@@ -10,7 +10,7 @@ namespace {
 /// Cubes of 1 m about these centres, each face one quadrilateral.
 struct Cubes {
   std::vector<double> x;
-  LoadedFaces faces{"quad4", {}};
+  solids::LoadedFaces faces{"quad4", {}};
 
   explicit Cubes(const std::vector<Vec3>& centres) {
     for (const Vec3& centre : centres) {
@@ -21,7 +21,9 @@ struct Cubes {
         faces.nodes.push_back(first + k);
     }
   }
-  [[nodiscard]] SolidInside inside() const { return {triangulated({faces}), x.data()}; }
+  [[nodiscard]] surface_contact::SolidInside inside() const {
+    return {surface_contact::triangulated({faces}), x.data()};
+  }
 };
 
 double depth_in_cube(const Vec3& x) {
@@ -31,14 +33,14 @@ double depth_in_cube(const Vec3& x) {
 }
 
 TEST(SolidInside, FindsTheDepthOfABallInASolidAndTheDirectionOut) {
-  const SolidInside cube = Cubes({Vec3::Zero()}).inside();
+  const surface_contact::SolidInside cube = Cubes({Vec3::Zero()}).inside();
   EXPECT_EQ(cube.size(), 1.0);
   Random random(3);
   int found = 0;
   for (int k = 0; k < 500; ++k) {
     const Vec3 x = random.vector(0.8);
     const double radius = k % 2 == 0 ? 0.0 : 0.2, depth = depth_in_cube(x) + radius;
-    const std::optional<SurfaceOverlap> overlap = cube.overlap(x, radius);
+    const std::optional<surface_contact::SurfaceOverlap> overlap = cube.overlap(x, radius);
     ASSERT_EQ(overlap.has_value(), depth > 0.1) << x.transpose();
     if (!overlap) continue;
     ++found;

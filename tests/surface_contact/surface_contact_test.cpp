@@ -50,12 +50,13 @@ struct Nodes {
 
 struct Case {
   const char* name;
-  RigidSurface surface;
+  surface_contact::RigidSurface surface;
   Vec3 near;  ///< A point of its surface.
 };
 
-RigidSurface around(const contact::Shape& shape) {
-  return {.kind = RigidSurface::Kind::convex, .solid = std::make_shared<contact::Shape>(shape)};
+surface_contact::RigidSurface around(const geometry::Shape& shape) {
+  return {.kind = surface_contact::RigidSurface::Kind::convex,
+          .solid = std::make_shared<geometry::Shape>(shape)};
 }
 
 /// The box of the cases as a convex hull.
@@ -65,26 +66,27 @@ std::vector<Vec3> brick_corners() {
     corners.emplace_back(k & 1 ? 2.0 : -2.0, k & 2 ? 3.0 : -3.0, k & 4 ? 2.5 : -2.5);
   return corners;
 }
-contact::Shape brick() { return contact::hull("brick", brick_corners(), {}, kTolerance); }
+geometry::Shape brick() { return geometry::hull("brick", brick_corners(), {}, kTolerance); }
 
-RigidSurface of_triangles(const contact::Shape& shape) {
-  return {.kind = RigidSurface::Kind::mesh, .triangles = std::make_shared<RigidMesh>(shape)};
+surface_contact::RigidSurface of_triangles(const geometry::Shape& shape) {
+  return {.kind = surface_contact::RigidSurface::Kind::mesh,
+          .triangles = std::make_shared<surface_contact::RigidMesh>(shape)};
 }
 
-RigidSurface brick_of_triangles() {
+surface_contact::RigidSurface brick_of_triangles() {
   return of_triangles(
-      contact::mesh("brick", contact::convex_hull("brick", brick_corners()), {}, kTolerance));
+      geometry::mesh("brick", geometry::convex_hull("brick", brick_corners()), {}, kTolerance));
 }
 
 /// A valley along y between two slopes of 1:2.
-RigidSurface valley() {
+surface_contact::RigidSurface valley() {
   std::vector<double> heights;
   for (int i = 0; i < 25; ++i) heights.push_back(1.5 * std::abs(i % 5 - 2));
-  return of_triangles(contact::height_field("valley", 5, 3.0, heights, {}, kTolerance));
+  return of_triangles(geometry::height_field("valley", 5, 3.0, heights, {}, kTolerance));
 }
 
 std::vector<Case> cases() {
-  using enum RigidSurface::Kind;
+  using enum surface_contact::RigidSurface::Kind;
   return {{"plane", {.kind = plane}, Vec3(0.3, 0.2, 0.0)},
           {"sphere", {.kind = sphere, .radius = 2.0}, Vec3(1.2, 0.0, 1.6)},
           {"hollow_sphere", {.kind = hollow_sphere, .radius = 2.0}, Vec3(1.2, 0.0, 1.6)},
@@ -116,8 +118,8 @@ std::vector<Case> cases() {
 struct Scene {
   Nodes nodes;
   std::vector<Vec3> X;
-  SurfacePlace place;
-  LoadedFaces faces;
+  surface_contact::SurfacePlace place;
+  solids::LoadedFaces faces;
 };
 
 /// A face whose nodes come close to the surface, on the ground or on a body
@@ -157,14 +159,18 @@ Scene scene(const Case& c, const std::string& shape, bool on_body, unsigned seed
   return s;
 }
 
-SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
+surface_contact::SurfaceLaw law(double mu, double end_share = 0.0) {
+  return soft_law(kTolerance, mu, end_share);
+}
 
-Vec forces(const SurfaceContact& contact, const Nodes& nodes, const std::vector<double>& history) {
+Vec forces(const surface_contact::SurfaceContact& contact, const Nodes& nodes,
+           const std::vector<double>& history) {
   return forces_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
 
 /// The matrix, by blocks of (point, i, j) like the sink of the solver.
-Mat tangent(const SurfaceContact& contact, const Nodes& nodes, const std::vector<double>& history) {
+Mat tangent(const surface_contact::SurfaceContact& contact, const Nodes& nodes,
+            const std::vector<double>& history) {
   const int count = static_cast<int>(nodes.x_n.size() / 3), n = contact.nodes_per_element();
   std::vector<int> slots;
   for (int e = 0; e < contact.size(); ++e)
@@ -191,7 +197,7 @@ Mat tangent(const SurfaceContact& contact, const Nodes& nodes, const std::vector
 constexpr std::size_t kNumbers = 14, kLowered = 11;
 
 /// History at the start, with the whole band for points that start within it.
-std::vector<double> with_whole_bands(const SurfaceContact& contact) {
+std::vector<double> with_whole_bands(const surface_contact::SurfaceContact& contact) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   for (std::size_t i = 0; i < static_cast<std::size_t>(contact.size()); ++i)
@@ -199,7 +205,7 @@ std::vector<double> with_whole_bands(const SurfaceContact& contact) {
   return history;
 }
 
-std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
+std::vector<double> bristles(const surface_contact::SurfaceContact& contact, unsigned seed) {
   Random random(seed);
   std::vector<double> history = with_whole_bands(contact);
   for (std::size_t i = 0; i < kNumbers * static_cast<std::size_t>(contact.size()); ++i)
@@ -208,9 +214,9 @@ std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
 }
 
 /// Contact points of the faces, or, with two nodes, of a rope between them.
-SurfacePoints points_of(const Scene& s) {
-  if (s.faces.shape != "rope") return surface_points("c", s.faces, s.X);
-  SurfacePoints rope;
+surface_contact::SurfacePoints points_of(const Scene& s) {
+  if (s.faces.shape != "rope") return surface_contact::surface_points("c", s.faces, s.X);
+  surface_contact::SurfacePoints rope;
   rope.nodes_per_point = 2;
   rope.radius = 0.2;
   for (const double t : {0.0, 0.3, 1.0}) {
@@ -221,15 +227,15 @@ SurfacePoints points_of(const Scene& s) {
 }
 
 template <class What>
-void for_scenes(const SurfaceLaw& l, double rho_inf, What&& what) {
+void for_scenes(const surface_contact::SurfaceLaw& l, double rho_inf, What&& what) {
   for (const Case& c : cases())
     for (const char* shape : {"quad4", "tri6", "rope"})
       for (const bool on_body : {false, true})
         for (const unsigned seed : {1U}) {
           SCOPED_TRACE(std::string(c.name) + " " + shape + (on_body ? " on a body" : ""));
           const Scene s = scene(c, shape, on_body, seed, context_of(rho_inf));
-          const SurfaceContact contact("c", points_of(s), s.nodes.start_positions(), c.surface,
-                                       s.place, l);
+          const surface_contact::SurfaceContact contact(
+              "c", points_of(s), s.nodes.start_positions(), c.surface, s.place, l);
           what(contact, s, bristles(contact, seed));
         }
 }
@@ -240,7 +246,7 @@ TEST(SurfaceContact, HasTheTangentOfItsForces) {
     for (const double mu : {0.0, 0.05, 5.0})
       for_scenes(
           law(mu, mu == 0.0 ? 0.5 : 0.0), rho_inf,
-          [](const SurfaceContact& contact, const Scene& s, const auto& history) {
+          [](const surface_contact::SurfaceContact& contact, const Scene& s, const auto& history) {
             // Free nodes move independently, those of the frame as a rigid body.
             const auto n = static_cast<Eigen::Index>(s.X.size());
             const Eigen::Index columns = 3 * n + (contact.external() ? 0 : 6);
@@ -284,57 +290,62 @@ TEST(SurfaceContact, HasTheTangentOfItsForces) {
 // @tests{surface-squared-distances}
 TEST(SurfaceContact, BalancesWorkWithStoredAndDissipatedEnergy) {
   for (const double mu : {0.0, 0.05, 5.0})
-    for_scenes(law(mu), 1.0, [](const SurfaceContact& contact, const Scene& s, auto history) {
-      const Vec f = forces(contact, s.nodes, history);
-      ASSERT_GT(f.norm(), 1e-3);
-      const double work =
-          f.dot(Eigen::Map<const Vec>(s.nodes.u.data(), static_cast<Eigen::Index>(f.size())));
-      Nodes still = s.nodes;
-      still.context.dt = 0.0;
-      const double before = contact.work(still.start(), history.data(), nullptr).stored;
-      const Work w = contact.work(s.nodes.step(), history.data(), nullptr);
-      EXPECT_GE(w.dissipated, 0.0);
-      EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12);
-      contact.commit(s.nodes.step(), history.data(), nullptr);
-      const SurfaceReport report = contact.report(history.data());
-      EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-14);
-      EXPECT_NEAR(report.impulse, report.normal_force * s.nodes.context.dt, 1e-14);
-      Vec3 sum = Vec3::Zero();
-      for (std::size_t i = 0; i < s.X.size(); ++i)
-        sum += f.segment<3>(3 * static_cast<Eigen::Index>(i));
-      EXPECT_LT((report.force - sum).norm(), 1e-13) << "on the solid";
-      still.x_n = s.nodes.x_n1;
-      EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
-    });
+    for_scenes(
+        law(mu), 1.0,
+        [](const surface_contact::SurfaceContact& contact, const Scene& s, auto history) {
+          const Vec f = forces(contact, s.nodes, history);
+          ASSERT_GT(f.norm(), 1e-3);
+          const double work =
+              f.dot(Eigen::Map<const Vec>(s.nodes.u.data(), static_cast<Eigen::Index>(f.size())));
+          Nodes still = s.nodes;
+          still.context.dt = 0.0;
+          const double before = contact.work(still.start(), history.data(), nullptr).stored;
+          const Work w = contact.work(s.nodes.step(), history.data(), nullptr);
+          EXPECT_GE(w.dissipated, 0.0);
+          EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12);
+          contact.commit(s.nodes.step(), history.data(), nullptr);
+          const surface_contact::SurfaceReport report = contact.report(history.data());
+          EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-14);
+          EXPECT_NEAR(report.impulse, report.normal_force * s.nodes.context.dt, 1e-14);
+          Vec3 sum = Vec3::Zero();
+          for (std::size_t i = 0; i < s.X.size(); ++i)
+            sum += f.segment<3>(3 * static_cast<Eigen::Index>(i));
+          EXPECT_LT((report.force - sum).norm(), 1e-13) << "on the solid";
+          still.x_n = s.nodes.x_n1;
+          EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
+        });
 }
 
 TEST(SurfaceContact, KeepsMomentaOfSolidAndBody) {
-  for_scenes(law(0.3), 0.5, [](const SurfaceContact& contact, const Scene& s, const auto& history) {
-    if (contact.external()) return;
-    const Vec f = forces(contact, s.nodes, history);
-    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-    for (int i = 0; 3 * i < f.size(); ++i) {
-      const Vec3 one = f.segment<3>(3 * i);
-      sum += one;
-      moment += s.nodes.step().position_alpha(i).cross(one);
-    }
-    EXPECT_LT(sum.norm(), 1e-13);
-    EXPECT_LT(moment.norm(), 1e-13);
-  });
+  for_scenes(
+      law(0.3), 0.5,
+      [](const surface_contact::SurfaceContact& contact, const Scene& s, const auto& history) {
+        if (contact.external()) return;
+        const Vec f = forces(contact, s.nodes, history);
+        Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+        for (int i = 0; 3 * i < f.size(); ++i) {
+          const Vec3 one = f.segment<3>(3 * i);
+          sum += one;
+          moment += s.nodes.step().position_alpha(i).cross(one);
+        }
+        EXPECT_LT(sum.norm(), 1e-13);
+        EXPECT_LT(moment.norm(), 1e-13);
+      });
 }
 
 TEST(SurfaceContact, DistributesItsAreaOverTheNodes) {
-  const RigidSurface plane;
-  const LoadedFaces faces{"quad4", {0, 1, 2, 3}};
+  const surface_contact::RigidSurface plane;
+  const solids::LoadedFaces faces{"quad4", {0, 1, 2, 3}};
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
-  SurfaceLaw l = law(0.0);
-  const SurfaceContact contact("c", surface_points("c", faces, X), X, plane, {}, l);
+  surface_contact::SurfaceLaw l = law(0.0);
+  const surface_contact::SurfaceContact contact("c", surface_contact::surface_points("c", faces, X),
+                                                X, plane, {}, l);
   Nodes nodes;
   for (const Vec3& x : X) nodes.add(x, Vec3::Zero());
   std::vector<double> history = with_whole_bands(contact);
   EXPECT_EQ(contact.report(history.data()).least_gap, 0.0);
   contact.commit(nodes.step(), history.data(), nullptr);
-  const SurfaceReport r = contact.report(history.data());
+  const surface_contact::SurfaceReport r = contact.report(history.data());
   EXPECT_NEAR(r.area, 6.0, 1e-14);
   EXPECT_NEAR(r.force[2], 6.0 * l.normal.force(0.0), 1e-12);
   EXPECT_EQ(r.least_gap, 0.0);
@@ -343,8 +354,9 @@ TEST(SurfaceContact, DistributesItsAreaOverTheNodes) {
 // @tests{surface-start}
 TEST(SurfaceContact, StoresNoEnergyAtItsStart) {
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
-  const SurfaceContact contact("c", surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X,
-                               RigidSurface{}, {}, law(0.0));
+  const surface_contact::SurfaceContact contact(
+      "c", surface_contact::surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X,
+      surface_contact::RigidSurface{}, {}, law(0.0));
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   Nodes nodes;
@@ -356,13 +368,13 @@ TEST(SurfaceContact, StoresNoEnergyAtItsStart) {
 
 /// Points that move through a shape, stopped before they leave it on the other side.
 TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
-  using enum RigidSurface::Kind;
-  const RigidSurface plate{.kind = box, .half = {5, 5, 0.5}, .rounding = 0.1};
-  SurfaceLaw l = law(0.0);
+  using enum surface_contact::RigidSurface::Kind;
+  const surface_contact::RigidSurface plate{.kind = box, .half = {5, 5, 0.5}, .rounding = 0.1};
+  surface_contact::SurfaceLaw l = law(0.0);
   l.normal.tolerance = 0.1;
   const std::vector<Vec3> X{{0, 0, 4}, {1, 0, 4}, {1, 1, 4}, {0, 1, 4}};
-  const SurfaceContact contact("c", surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X, plate, {},
-                               l);
+  const surface_contact::SurfaceContact contact(
+      "c", surface_contact::surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X, plate, {}, l);
   const auto part = [&](const Vec3& move) {
     Nodes nodes;
     for (const Vec3& x : X) nodes.add(x, move);
@@ -380,26 +392,30 @@ TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
 
 TEST(SurfaceContact, LeavesOutGivenNodes) {
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
-  const SurfacePoints some = surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {1, 3});
+  const surface_contact::SurfacePoints some =
+      surface_contact::surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {1, 3});
   EXPECT_EQ(some.nodes, (std::vector<int>{0, 2}));
   EXPECT_NEAR(some.points[0].area, 1.5, 1e-14);
-  EXPECT_THROW(static_cast<void>(surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {0, 1, 2, 3})),
+  EXPECT_THROW(static_cast<void>(
+                   surface_contact::surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {0, 1, 2, 3})),
                InputError);
-  EXPECT_EQ(median_edge({"quad4", {0, 1, 2, 3}}, X), 3.0);
+  EXPECT_EQ(surface_contact::median_edge({"quad4", {0, 1, 2, 3}}, X), 3.0);
 }
 
 /// Gaps of hulls, cones and ellipsoids equal to those of boxes, flanks and spheres.
 TEST(ConvexSurface, HasTheGapsOfEquivalentShapes) {
-  using enum RigidSurface::Kind;
+  using enum surface_contact::RigidSurface::Kind;
   Random random(41);
-  const RigidSurface plate{.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = kTolerance};
-  const RigidSurface ball{.kind = sphere, .radius = 2.0};
-  const RigidSurface hull = around(brick());
-  const RigidSurface round = around(contact::ellipsoid("ball", {4.0, 4.0, 4.0}));
-  const RigidSurface spike = around(contact::cone("spike", 4.0, 6.0, {}, 0.1));
-  const auto compare = [](const RigidSurface& a, const RigidSurface& b, const Vec3& y) {
+  const surface_contact::RigidSurface plate{
+      .kind = box, .half = {2.0, 3.0, 2.5}, .rounding = kTolerance};
+  const surface_contact::RigidSurface ball{.kind = sphere, .radius = 2.0};
+  const surface_contact::RigidSurface hull = around(brick());
+  const surface_contact::RigidSurface round = around(contact::ellipsoid("ball", {4.0, 4.0, 4.0}));
+  const surface_contact::RigidSurface spike = around(contact::cone("spike", 4.0, 6.0, {}, 0.1));
+  const auto compare = [](const surface_contact::RigidSurface& a,
+                          const surface_contact::RigidSurface& b, const Vec3& y) {
     const contact::NormalLaw any;
-    const RigidSurface::Gap g = a.gap(y, {any}), h = b.gap(y, {any});
+    const surface_contact::RigidSurface::Gap g = a.gap(y, {any}), h = b.gap(y, {any});
     EXPECT_NEAR(g.value, h.value, 1e-13);
     EXPECT_LT((g.normal - h.normal).norm(), 1e-11);
     EXPECT_LT((g.curvature - h.curvature).norm(), 1e-9);

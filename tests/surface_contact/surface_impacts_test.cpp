@@ -12,7 +12,7 @@ namespace {
 /// A straight rope that hits the floor flat at 1 m/s, without weight, with ends so light that they
 /// move with it.
 Model rope(double e, double mu, double along, double step) {
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, 0]
 bodies:
@@ -24,8 +24,8 @@ cables:
 contacts: {{default: {{restitution: {0}, friction: {2}}}}}
 analysis: {{duration: 8 ms, step: {3}}}
 )",
-                                e, along, mu, step),
-                         "rope.yaml");
+                                    e, along, mu, step),
+                             "rope.yaml");
 }
 
 // @tests{surface-turn}
@@ -60,7 +60,7 @@ TEST(SurfaceImpacts, OfASolidOnAFreeBodyKeepMomentaAndNeverAddEnergy) {
   for (const double e : {0.0, 0.5, 1.0})
     for (const double step : {5e-3, 1e-3}) {
       SCOPED_TRACE(format("e = {}, step {} s", e, step));
-      Simulation simulation(read_model_text(format(R"(
+      Simulation simulation(io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, 0]
 materials: {{rubber: {{type: neo_hookean, youngs_modulus: 1e6, poisson_ratio: 0.3, density: 1000}}}}
@@ -71,8 +71,8 @@ solids:
 contacts: {{default: {{restitution: {}, friction: 0.2}}}}
 analysis: {{duration: 20 ms, step: {}}}
 )",
-                                                   e, step),
-                                            "block.yaml"));
+                                                       e, step),
+                                                "block.yaml"));
       const RunSummary summary = simulation.run();
       ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
       EXPECT_LT(simulation.body("table").v.z(), -0.3);
@@ -87,7 +87,7 @@ analysis: {{duration: 20 ms, step: {}}}
 
 /// A straight cable that falls across another one at 1 m/s, without weight, both of one element.
 Model crossing_cables(double e, double mu, double along, double step) {
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, 0]
 bodies:
@@ -101,8 +101,8 @@ cables:
 contacts: {{default: {{restitution: {0}, friction: {2}}}}}
 analysis: {{duration: 6 ms, step: {3}}}
 )",
-                                e, along, mu, step),
-                         "cables.yaml");
+                                    e, along, mu, step),
+                             "cables.yaml");
 }
 
 /// Velocities of equal masses after impact: their mean, plus or minus half of e times the approach
@@ -152,7 +152,7 @@ TEST(SurfaceImpacts, OfSolidsOnEachOtherReboundByTheirRestitution) {
   for (const double e : {0.0, 0.5, 1.0})
     for (const double step : {1e-3, 2e-4, 2e-5}) {
       SCOPED_TRACE(format("e = {}, step {} s", e, step));
-      Simulation simulation(read_model_text(format(R"(
+      Simulation simulation(io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, 0]
 materials: {{rubber: {{type: neo_hookean, youngs_modulus: 1e6, poisson_ratio: 0.3, density: 1000}}}}
@@ -167,8 +167,8 @@ solids:
 contacts: {{default: {{restitution: {}}}}}
 analysis: {{duration: 6 ms, step: {}}}
 )",
-                                                   e, step),
-                                            "blocks.yaml"));
+                                                       e, step),
+                                                "blocks.yaml"));
       const RunSummary summary = simulation.run();
       ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
       EXPECT_NEAR(simulation.body("below").v.z(), -e, 1e-3);

@@ -50,7 +50,7 @@ analysis: {duration: 0.1 s, step: 0.1 ms}
 )";
 
 TEST(BeamContact, BarOnTwoPegsDeflectsByTheClosedForm) {
-  Simulation s(read_model_text(kOnPegs, "pegs.yaml"));
+  Simulation s(io::read_model_text(kOnPegs, "pegs.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   // Span L with overhangs c under its weight w, and the shear of the span.
@@ -67,7 +67,7 @@ TEST(BeamContact, BarOnTwoPegsDeflectsByTheClosedForm) {
 }
 
 TEST(BeamContact, CrossingRodsKeepEnergyAndMomenta) {
-  Simulation s(read_model_text(kCrossing, "crossing.yaml"));
+  Simulation s(io::read_model_text(kCrossing, "crossing.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_LT(r.energy_drift, 1e-10);
@@ -91,7 +91,7 @@ TEST(BeamContact, RodsOfConsistentMassReboundWithoutGainingEnergyOrMomentum) {
   set("contact: {}", "consistent_mass: 0.5, contact: {}");
   set("restitution: 1", "restitution: 0.4");
   set("duration: 0.1 s, step: 0.1 ms", "duration: 60 ms, step: 0.2 ms");
-  Simulation s(read_model_text(text, "crossing.yaml"));
+  Simulation s(io::read_model_text(text, "crossing.yaml"));
   const Balance start = s.balance();
   double energy = start.kinetic + start.potential;
   const RunSummary r = s.run({}, [&](Simulation& now) {

@@ -11,8 +11,8 @@
 namespace polhode::beam_file_tests {
 namespace {
 
-Vec3 tip_of(const std::string& text, const Overrides& overrides = {}) {
-  Simulation s(read_model_text(text, "beam.yaml", overrides));
+Vec3 tip_of(const std::string& text, const io::Overrides& overrides = {}) {
+  Simulation s(io::read_model_text(text, "beam.yaml", overrides));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   return s.beam(0).position.back();
@@ -88,7 +88,7 @@ TEST(BeamFile, ACantileverBendsByTheDifferentialEquations) {
 // Timoshenko's, exact. Errors of the averaged mass are a quarter of those of 16 elements, which are
 // −0.40, −0.29, 0.07 % (tests/beams/beam_dynamics_test.cpp).
 TEST(BeamFile, AFreeBarHasTimoshenkosFrequencies) {
-  const ModalAnalysis bar(read_model_text(kFreeBar, "bar.yaml"));
+  const ModalAnalysis bar(io::read_model_text(kFreeBar, "bar.yaml"));
   ASSERT_TRUE(bar.converged()) << bar.message();
   const std::vector<Mode>& modes = bar.report().modes;
   ASSERT_EQ(modes.size(), 12u);

@@ -22,7 +22,7 @@ using Complex = std::complex<double>;
 /// Eigenvalues from steer and lean of the bicycle: as a linear motion with 4 unknowns they satisfy
 /// a recursion of the fourth order, whose roots are exp(λ Δ).
 std::vector<Complex> eigenvalues(double v, double delta = 0.04, int samples = 60) {
-  Simulation s(read_model(
+  Simulation s(io::read_model(
       test::source_dir() + "/examples/bicycle/model.yaml",
       {"variables.v=" + std::to_string(v), "variables.push=1e-4", "variables.h=5 ms",
        "analysis.order=6", "analysis.duration=" + std::to_string(delta * samples) + " s"}));

@@ -22,22 +22,22 @@ using std::numbers::pi;
 /// @param at  x and y of the ball.
 Model hit(double step, double duration, double speed, const std::string& at,
           const std::string& solver = "automatic") {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 bodies:
   left: {shape: {box: [0.1, 0.2, 0.2]}, density: 1000, position: [-0.55, 0, 0]}
   right: {shape: {box: [0.1, 0.2, 0.2]}, density: 1000, position: [0.55, 0, 0]}
   ball: {shape: {sphere: 60 mm}, density: 2000, position: [)" +
-                             at +
-                             format(R"(, 0.04], velocity: [0, 0, {:g}]}}
+                                 at +
+                                 format(R"(, 0.04], velocity: [0, 0, {:g}]}}
 cables:
   rope: {{through: [[left, [0.05, 0, 0]], [right, [-0.05, 0, 0]]], stiffness: 20 kN, mass_per_length: 0.05,
          elements: 20, contact: {{radius: 4 mm}}}}
 contacts: {{default: {{restitution: 1}}}}
 analysis: {{duration: {:g}, step: {:g}, solver: {}}}
 )",
-                                    -speed, duration, step, solver),
-                         "hit.yaml");
+                                        -speed, duration, step, solver),
+                             "hit.yaml");
 }
 
 double node_z(const Simulation& s, int node) {
@@ -144,7 +144,7 @@ TEST(CableContact, SmoothDrumActsAsAPulley) {
 /// tension follows from the length; the peg carries the part of the weight that the ends do not.
 TEST(CableContact, RopeOnAPegCarriesItsWeightByTheParabola) {
   const double l = 0.5, EA = 1e4, free = 0.495, w = 1.5 * 9.81;
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies:
@@ -152,11 +152,11 @@ bodies:
 cables:
   rope: {through: [[ground, [-0.5, 0, 0]], [ground, [0.5, 0, 0]]], stiffness: 10 kN, free_length: 0.99,
          mass_per_length: )" + format("{:.17g}", 1.5 / free * l) +
-                                   R"(, contact: {radius: 5 mm}, elements: 40}
+                                       R"(, contact: {radius: 5 mm}, elements: 40}
 contacts: {}
 analysis: {type: statics}
 )",
-                               "peg.yaml"));
+                                   "peg.yaml"));
   const RunSummary result = s.run();
   ASSERT_EQ(result.end, RunEnd::finished) << result.message;
   const double d = 5e-3;  // from the ends down to the top of the peg
@@ -175,7 +175,7 @@ analysis: {type: statics}
 
 /// A rope with weights at its ends falls across a beam, and they swing.
 TEST(CableContact, RopeSwingsOverABeam) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 materials:
@@ -191,7 +191,7 @@ cables:
 contacts: {default: {friction: 0.4}}
 analysis: {duration: 0.25 s, step: 0.5 ms}
 )",
-                               "over.yaml"));
+                                   "over.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_LT(s.body(0).r.z(), -0.1);

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 /// A cube is thrown at a cable between two blocks, all free in space.
 Model thrown(const std::string& cube, const std::string& modulus, const std::string& law,
              double duration, double step) {
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 bodies:
   left: {{shape: {{box: [0.1, 0.2, 0.2]}}, density: 1000, position: [-0.25, 0, 0]}}
@@ -33,8 +33,8 @@ cables:
 contacts: {{default: {{{}}}}}
 analysis: {{duration: {:g}, step: {:g}}}
 )",
-                                modulus, cube, law, duration, step),
-                         "thrown.yaml");
+                                    modulus, cube, law, duration, step),
+                             "thrown.yaml");
 }
 
 ContactReport between(const Simulation& s, const std::string& a, const std::string& b) {
@@ -84,7 +84,7 @@ TEST(CableOnSolid, HasFrictionAndKeepsMomenta) {
 
 /// A plate that moves by three thicknesses of the cable in a step.
 TEST(CableOnSolid, AFastPlateDoesNotPassThroughAThinCable) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 bodies:
   left: {shape: {box: [0.1, 0.2, 0.2]}, density: 1000, position: [-0.25, 0, 0]}
@@ -99,7 +99,7 @@ cables:
 contacts: {default: {restitution: 1}}
 analysis: {duration: 2 ms, step: 1 ms}
 )",
-                               "fast.yaml"));
+                                   "fast.yaml"));
   const RunSummary r = s.run({}, [](Simulation& now) {
     const Vec3 middle = now.body(now.model().body_index("rope.6")).r;
     double low = 1.0;
@@ -116,7 +116,7 @@ analysis: {duration: 2 ms, step: 1 ms}
 TEST(CableOnSolid, RefusesCablesThatStartWithinASolid) {
   const auto error_of = [](const std::string& bonded, double height) -> std::string {
     try {
-      Simulation(read_model_text(format(R"(
+      Simulation(io::read_model_text(format(R"(
 format: 1
 materials: {{rubber: {{type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}}}
 bodies:
@@ -129,8 +129,8 @@ cables:
 contacts: {{}}
 analysis: {{duration: 0.1 ms, step: 0.1 ms}}
 )",
-                                        height, bonded),
-                                 "start.yaml"))
+                                            height, bonded),
+                                     "start.yaml"))
           .run();
     } catch (const std::exception& e) {
       return e.what();
@@ -146,7 +146,7 @@ analysis: {{duration: 0.1 ms, step: 0.1 ms}}
 /// ends.
 TEST(CableOnSolid, HasAContactForceThatBalancesItsEnds) {
   for (const double beside : {0.0, 0.013}) {
-    Simulation s(read_model_text(format(R"(
+    Simulation s(io::read_model_text(format(R"(
 format: 1
 materials: {{rubber: {{type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}}}
 solids:
@@ -158,8 +158,8 @@ gravity: [0, 0, -9.81]
 contacts: {{}}
 analysis: {{type: statics, load_steps: 4}}
 )",
-                                        beside),
-                                 "pad.yaml"));
+                                            beside),
+                                     "pad.yaml"));
     const RunSummary r = s.run();
     ASSERT_EQ(r.end, RunEnd::finished) << r.message;
     const ContactReport c = between(s, "rope", "pad");

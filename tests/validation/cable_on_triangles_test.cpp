@@ -24,7 +24,7 @@ using testing::HasSubstr;
 /// A body is thrown at a cable between two blocks, all free in space.
 /// @param how  Position and velocities of the body.
 Model thrown(const std::string& shape, const std::string& how, double duration, double step) {
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 bodies:
   left: {{shape: {{box: [0.1, 0.2, 0.2]}}, density: 1000, position: [-0.55, 0, 0]}}
@@ -36,8 +36,8 @@ cables:
 contacts: {{default: {{restitution: 1}}}}
 analysis: {{duration: {:g}, step: {:g}}}
 )",
-                                how, shape, duration, step),
-                         "thrown.yaml");
+                                    how, shape, duration, step),
+                             "thrown.yaml");
 }
 
 double impulses(const Simulation& s) {
@@ -51,7 +51,7 @@ double impulses(const Simulation& s) {
 /// radius.
 TEST(CableOnTriangles, FarAboveAFieldOverlapsNothing) {
   for (const double radius : {5.8e-3, 5.85e-3, 5.9e-3, 6e-3, 7e-3, 8e-3}) {
-    const Model model = read_model_text(format(R"(
+    const Model model = io::read_model_text(format(R"(
 format: 1
 bodies:
   field: {{fixed: true, shape: {{height_field: {{spacing: 0.15, heights: [[0, 0, 0], [0, 0, 0], [0, 0, 0]]}}}}}}
@@ -62,8 +62,8 @@ cables:
 contacts: {{}}
 analysis: {{duration: 1 ms, step: 1 ms}}
 )",
-                                               radius),
-                                        "above.yaml");
+                                                   radius),
+                                            "above.yaml");
     EXPECT_NO_THROW(Simulation{model}) << radius;
   }
 }
@@ -176,7 +176,7 @@ TEST(CableOnTriangles, RopeLiesInAGroove) {
     rows += "]";
   }
   const double radius = 0.01, height = radius * std::sqrt(2.0);
-  Simulation s(read_model_text(format(R"(
+  Simulation s(io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies: {{ground_shape: {{fixed: true, shape: {{height_field: {{spacing: 0.05, heights: [{}]}}}}}}}}
@@ -186,8 +186,8 @@ cables:
 contacts: {{}}
 analysis: {{type: statics}}
 )",
-                                      rows, height + 3e-5, height + 3e-5),
-                               "groove.yaml"));
+                                          rows, height + 3e-5, height + 3e-5),
+                                   "groove.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   const ContactReport c = s.contact(0);
@@ -205,7 +205,7 @@ TEST(CableOnTriangles, RefusesCablesThatStartWithinABody) {
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
   const auto error_of = [&](const std::string& from, double height, const std::string& shape) {
     try {
-      Simulation(read_model_text(format(R"(
+      Simulation(io::read_model_text(format(R"(
 format: 1
 bodies:
   rock: {{fixed: true, shape: {}}}
@@ -215,8 +215,8 @@ cables:
 contacts: {{}}
 analysis: {{duration: 1 ms, step: 1 ms}}
 )",
-                                        shape, height, from, height),
-                                 "start.yaml"))
+                                            shape, height, from, height),
+                                     "start.yaml"))
           .run();
     } catch (const std::exception& e) {
       return std::string(e.what());

@@ -22,7 +22,7 @@ constexpr double g = 9.81;
 TEST(CablePairs, TightCablesBendEachOtherByTheForceBalance) {
   const double radius = 5e-3, below = 0.03, EA_1 = 2e4, EA_2 = 5e4, half_1 = 1.0, half_2 = 0.7;
   const double free_1 = 0.995, free_2 = 0.69, kGuess = 0.02;
-  Model model = read_model_text(format(R"(
+  Model model = io::read_model_text(format(R"(
 format: 1
 cables:
   lower: {{through: [[ground, [-1, 0, 0]], [ground, [1, 0, 0]]], stiffness: {:g}, free_length: {:g},
@@ -32,8 +32,8 @@ cables:
 contacts: {{}}
 analysis: {{type: statics}}
 )",
-                                       EA_1, 2.0 * free_1, EA_2, 2.0 * free_2),
-                                "kink.yaml");
+                                           EA_1, 2.0 * free_1, EA_2, 2.0 * free_2),
+                                    "kink.yaml");
   // The cables of the file are straight, one below the other; the kinked shape here is an initial
   // guess.
   const auto kink = [&](const std::string& cable, int pieces, double ends, double middle) {
@@ -86,7 +86,7 @@ RunSummary sled(Simulation& s, double* v_1, double* t_1) {
 }
 
 Model sled_model(double slope, double mu) {
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 gravity: [{:.17g}, 0, {:.17g}]
 bodies:
@@ -103,8 +103,8 @@ cables:
 contacts: {{default: {{friction: {:g}}}}}
 analysis: {{step: 0.5 ms, duration: 0.25}}
 )",
-                                g * std::sin(slope), -g * std::cos(slope), mu),
-                         "sled.yaml");
+                                    g * std::sin(slope), -g * std::cos(slope), mu),
+                             "sled.yaml");
 }
 
 TEST(CablePairs, ACableAcrossTwoOthersSlidesOnASlopeByCoulombsLaw) {
@@ -131,7 +131,7 @@ TEST(CablePairs, ACableAcrossTwoOthersSlidesOnASlopeByCoulombsLaw) {
 TEST(CablePairs, ACableAlongTwoOthersSlidesInTheirGrooveAsAWedge) {
   const double mu = 0.3, radius = 4e-3, wedge = mu / std::cos(std::numbers::pi / 6.0);
   for (const double slope : {std::atan(wedge) - 0.01, std::atan(wedge) + 0.01, 0.6}) {
-    Simulation s(read_model_text(format(R"(
+    Simulation s(io::read_model_text(format(R"(
 format: 1
 gravity: [{0:.17g}, 0, {1:.17g}]
 bodies:
@@ -148,9 +148,9 @@ cables:
 contacts: {{default: {{friction: {4:g}}}, exclude: [[rail_1, rail_2]]}}
 analysis: {{step: 0.5 ms, duration: 0.25}}
 )",
-                                        g * std::sin(slope), -g * std::cos(slope),
-                                        radius * std::sqrt(3.0) * 1.0, radius, mu),
-                                 "groove.yaml"));
+                                            g * std::sin(slope), -g * std::cos(slope),
+                                            radius * std::sqrt(3.0) * 1.0, radius, mu),
+                                     "groove.yaml"));
     double v_1 = 0.0, t_1 = 0.0;
     const RunSummary r = sled(s, &v_1, &t_1);
     ASSERT_EQ(r.end, RunEnd::finished) << r.message;

@@ -28,7 +28,7 @@ constexpr double kEnds = 1e-9;
 Model crossed(double step, double duration, double speed, double angle,
               const std::string& more = "restitution: 1") {
   const double c = std::cos(angle), s = std::sin(angle), h = 0.55, z = 0.02;
-  return read_model_text(format(R"(
+  return io::read_model_text(format(R"(
 format: 1
 bodies:
   left: {{shape: {{box: [0.1, 0.1, 0.1]}}, density: 1000, position: [-0.55, 0.001, 0], contact: {{touches: false}}}}
@@ -44,8 +44,8 @@ contacts: {{default: {{{6}}}}}
 analysis: {{duration: {7:g}, step: {8:g}}}
 output: {{probes: {{touch: {{contact: [lower, upper]}}}}}}
 )",
-                                -h * c, -h * s, h * c, h * s, z, -speed, more, duration, step),
-                         "crossed.yaml");
+                                    -h * c, -h * s, h * c, h * s, z, -speed, more, duration, step),
+                             "crossed.yaml");
 }
 
 /// @param pieces  Of the cable.
@@ -116,7 +116,7 @@ TEST(CablePairs, AllSolversAgree) {
   const auto model = [](const std::string& solver) {
     Model m = crossed(2e-4, 0.02, 3.0, 0.9);
     m.analysis.solver = solver;
-    const Model balls = read_model_text(R"(
+    const Model balls = io::read_model_text(R"(
 format: 1
 bodies:
   one: {shape: {sphere: 30 mm}, density: 500, position: [0.05, 0.05, 0.22], velocity: [0, 0, -12]}
@@ -124,7 +124,7 @@ bodies:
 contacts: {}
 analysis: {duration: 1, step: 0.1}
 )",
-                                        "balls.yaml");
+                                            "balls.yaml");
     for (const BodySpec& ball : balls.bodies) m.bodies.push_back(ball);
     return m;
   };
@@ -147,7 +147,7 @@ analysis: {duration: 1, step: 0.1}
 TEST(CablePairs, TouchByGroupsAndExclusions) {
   const auto pairs = [](const std::string& of_one, const std::string& of_two,
                         const std::string& contacts) {
-    Simulation s(read_model_text(format(R"(
+    Simulation s(io::read_model_text(format(R"(
 format: 1
 cables:
   one: {{through: [[ground, [-1, 0, 0]], [ground, [1, 0, 0]]], stiffness: 10 kN, mass_per_length: 0.05, elements: 4, contact: {{radius: 4 mm{}}}}}
@@ -155,8 +155,8 @@ cables:
 contacts: {{{}}}
 analysis: {{duration: 0.05, step: 0.5 ms}}
 )",
-                                        of_one, of_two, contacts),
-                                 "groups.yaml"));
+                                            of_one, of_two, contacts),
+                                     "groups.yaml"));
     return s.contact_map().surfaces.size();
   };
   EXPECT_EQ(pairs("", "", ""), 1U);
@@ -180,7 +180,7 @@ Model loop(double speed, double step, double duration, const std::string& law,
   for (int k = 10; k >= -11; --k) path.emplace_back(0.2 / 11 * k, -0.1 / 11 * k, 0.03);
   double length = 0.0;
   for (std::size_t k = 1; k < path.size(); ++k) length += (path[k] - path[k - 1]).norm();
-  Model model = read_model_text(
+  Model model = io::read_model_text(
       format(R"(
 format: 1
 bodies:
@@ -254,14 +254,14 @@ TEST(CablePairs, ContinueFromACheckpointInTheSameBits) {
     int touched = 0;
     const RunSummary r = straight.run({}, [&](Simulation& now) {
       if (now.contact(0).points > 0 && ++touched == 3)
-        write_checkpoint(file, model, now.system(), now.state());
+        io::write_checkpoint(file, model, now.system(), now.state());
     });
     ASSERT_EQ(r.end, RunEnd::finished) << r.message;
     ASSERT_GT(touched, 3);
     EXPECT_GT(r.contacts->lost_by_friction, 0.0);
     EXPECT_GT(r.contacts->lost_in_impacts, 0.0);
     EXPECT_LT(r.energy_drift, 1e-9) << "the loss is in the energy balance";
-    Simulation continued(model, read_checkpoint(file, model, straight.system()));
+    Simulation continued(model, io::read_checkpoint(file, model, straight.system()));
     EXPECT_LT(continued.time(), straight.time());
     ASSERT_EQ(continued.run().end, RunEnd::finished);
     EXPECT_EQ(continued.state_hash(), straight.state_hash()) << self;
@@ -271,7 +271,7 @@ TEST(CablePairs, ContinueFromACheckpointInTheSameBits) {
 /// Three ropes from one hook at small angles, which overlap there, and one that ends where it
 /// began: pieces near the hook are excluded from contact, and overlaps elsewhere are reported.
 TEST(CablePairs, LeaveOutPiecesNearACommonAttachment) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies:
@@ -286,14 +286,14 @@ cables:
 contacts: {default: {friction: 0.2}}
 analysis: {duration: 0.05, step: 0.5 ms}
 )",
-                               "hook.yaml"));
+                                   "hook.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_LT(r.energy_drift, 1e-9);
   EXPECT_LT(std::abs(s.body(s.model().body_index("first.1")).r.x()), 1e-3)
       << "no contact force acts on it";
   try {
-    Simulation crossing(read_model_text(R"(
+    Simulation crossing(io::read_model_text(R"(
 format: 1
 cables:
   first: {through: [[ground, [-1, 0, 0]], [ground, [1, 0, 0]]], stiffness: 10 kN, mass_per_length: 0.05, elements: 4, contact: {radius: 4 mm}}
@@ -301,7 +301,7 @@ cables:
 contacts: {}
 analysis: {duration: 0.05, step: 0.5 ms}
 )",
-                                        "cross.yaml"));
+                                            "cross.yaml"));
     FAIL() << "overlaps";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("first in second by 0.003 m"), std::string::npos)

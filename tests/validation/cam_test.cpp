@@ -127,14 +127,14 @@ output: {hdf5: false}
 }
 
 TEST(Groove, EndsWithAnOpenCurve) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 bodies: {bead: {mass: 0.3, point_mass: true, position: [0, 0, 0], velocity: [1, 0, 0]}}
 loads: {it: {type: point_on_curve, bodies: [ground, bead], at: [[0, 0, 0], [0, 0, 0]], points: [[0, 0, 0], [0.2, 0.01, 0], [0.5, 0, 0]], holds: point}}
 analysis: {type: dynamics, duration: 1 s, step: 5 ms}
 output: {hdf5: false}
 )",
-                               "groove.yaml"));
+                                   "groove.yaml"));
   const RunSummary summary = s.run();
   EXPECT_EQ(summary.end, RunEnd::not_converged);
   EXPECT_NE(summary.message.find("a point passed the end of its curve"), std::string::npos)
@@ -144,7 +144,7 @@ output: {hdf5: false}
 TEST(Groove, ReportsInvalidCurves) {
   const auto message = [](const std::string& curve) {
     try {
-      (void)read_model_text(
+      (void)io::read_model_text(
           R"(
 format: 1
 bodies: {bead: {mass: 0.3, point_mass: true, position: [0, 0, 0]}}

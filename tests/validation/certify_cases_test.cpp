@@ -129,7 +129,7 @@ CertifiedCase symmetric() {
 
 /// A mass on a spring with a damper, released at rest: closed form of textbooks on vibrations.
 CertifiedCase damped_oscillator() {
-  Model model = read_model_text(R"(format: 1
+  Model model = io::read_model_text(R"(format: 1
 bodies:
   mass: {mass: 2, inertia: [1, 1, 1], position: [1.3, 0, 0], hold: [y, z, rx, ry, rz]}
 loads:
@@ -137,7 +137,7 @@ loads:
 analysis: {duration: 5 s, step: 20 ms}
 output: {probes: {p: {body: mass}}}
 )",
-                                "oscillator.yaml");
+                                    "oscillator.yaml");
   const double d = 1.5 / 4.0, w = std::sqrt(25.0 - d * d);
   return {"Oscillator",
           model,

@@ -20,8 +20,8 @@ constexpr double kCoarse = 0.02, kDefault = 0.002, kFine = 0.00002;
 std::string step(double h) { return format("h={:.17g}", h); }
 
 /// Time of the event `e`.
-double time_of(const std::string& text, double h, const Overrides& more = {}) {
-  Overrides overrides = more;
+double time_of(const std::string& text, double h, const io::Overrides& more = {}) {
+  io::Overrides overrides = more;
   overrides.push_back(step(h));
   Simulation s = made(text, overrides);
   const RunSummary r = finished(s);
@@ -415,7 +415,7 @@ TEST(Channels, ReportErrors) {
       "controllers.c: is missing: 'normal' of a contact is a mean over the step, which a "
       "continuous controller cannot use. Give a sample time.");
   // The same models in code.
-  Model model = read_model_text(
+  Model model = io::read_model_text(
       pressed("{controller: c}",
               "controllers: {c: {contact: [block, floor], channel: normal, proportional: 1, "
               "sample: 10 ms}}"),

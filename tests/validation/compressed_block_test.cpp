@@ -30,8 +30,8 @@ class CompressedBlock : public testing::TestWithParam<Compression> {};
 TEST_P(CompressedBlock, StaysHomogeneousAndHasTheStabilityOfItsElements) {
   const Compression& c = GetParam();
   const double n = c.cells;
-  const Mesh mesh =
-      make_mesh("block", "block", {{"size", {1.0, 1.0 / n, 1.0}}, {"cells", {n, 1.0, n}}}, c.shape);
+  const solids::Mesh mesh = solids::make_mesh(
+      "block", "block", {{"size", {1.0, 1.0 / n, 1.0}}, {"cells", {n, 1.0, n}}}, c.shape);
   System system;
   const auto still = std::make_shared<test::Constant>(0.0);
   const auto plate = std::make_shared<test::Constant>(c.stretch - 1.0);
@@ -43,16 +43,16 @@ TEST_P(CompressedBlock, StaysHomogeneousAndHasTheStabilityOfItsElements) {
     if (X.z() < -0.5 + 1e-9) system.prescribe(i, 2, still);
     if (X.z() > 0.5 - 1e-9) system.prescribe(i, 2, plate);
   }
-  SolidElementsDescription d;
+  solids::SolidElementsDescription d;
   d.name = "solids.block";
   d.element = c.element;
-  d.material =
-      make_material("materials.m", {.kind = "mooney_rivlin_uncoupled",
-                                    .values = {{"c1", 0.5}, {"bulk_modulus", kBulkOverShear}}});
+  d.material = solids::make_material("materials.m",
+                                     {.kind = "mooney_rivlin_uncoupled",
+                                      .values = {{"c1", 0.5}, {"bulk_modulus", kBulkOverShear}}});
   d.density = 1.0;
   d.connectivity = mesh.blocks.at(0).nodes;
   d.X = mesh.nodes;
-  system.add_elements(make_solid_elements(std::move(d)));
+  system.add_elements(solids::make_solid_elements(std::move(d)));
   system.finish();
   State state = system.initial_state();
   const StaticReport report = solve_statics(system, state, {.load_steps = 8});

@@ -22,8 +22,8 @@ struct Outcome {
   [[nodiscard]] const BodyMotion& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
 };
 
-inline Outcome run(const std::string& text, const Overrides& overrides = {}) {
-  Simulation s(read_model_text(text, "connector.yaml", overrides));
+inline Outcome run(const std::string& text, const io::Overrides& overrides = {}) {
+  Simulation s(io::read_model_text(text, "connector.yaml", overrides));
   Outcome o;
   o.summary = s.run();
   EXPECT_EQ(o.summary.end, RunEnd::finished) << o.summary.message;

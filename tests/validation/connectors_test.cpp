@@ -382,7 +382,7 @@ output: {hdf5: false}
 TEST(Connectors, RefuseInvalidInput) {
   const auto message = [](const std::string& text) -> std::string {
     try {
-      Simulation s(read_model_text(text, "m.yaml"));
+      Simulation s(io::read_model_text(text, "m.yaml"));
     } catch (const std::exception& e) {
       return e.what();
     }

@@ -79,7 +79,7 @@ TEST(ContactImpact, DampedImpactHasThePublishedRestitution) {
   for (int i = 0; i < 5; ++i) {
     Scene s(Vec3::Zero());
     const int ball = s.add_ball("ball", 0.1, 1.6, at({-0.201, 0.0, 0.0}, {10.0, 0.0, 0.0}));
-    s.contacts->add_shape({kGround, "target", contact::sphere("target", 0.2)});
+    s.contacts->add_shape({kGround, "target", geometry::sphere("target", 0.2)});
     contact::ContactLaw law;
     law.potential = contact::NormalPotential::linear;
     law.stiffness = 1e6;

@@ -24,7 +24,7 @@ struct Scene {
 
   [[nodiscard]] Simulation with(const std::string& law, double step, double length) const {
     const double angle = std::atan(slope);
-    return Simulation(read_model_text(
+    return Simulation(io::read_model_text(
         format("format: 1\ngravity: [{:.17g}, 0, {:.17g}]\nbodies:\n"
                "{}{}\n"
                "contacts: {{default: {{law: {}, {}}}}}\n"

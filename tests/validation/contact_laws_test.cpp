@@ -213,7 +213,7 @@ analysis: {duration: 0.02 s, step: 1 ms}
   for (const char* law : {"linear", "hertz"})
     for (const char* step : {"10 ms", "1 ms", "0.1 ms", "0.01 ms"}) {
       SCOPED_TRACE(format("{} {}", law, step));
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           model, "m.yaml",
           {format("contacts.default.law={}", law), format("analysis.step={}", step)}));
       const RunSummary end = s.run();

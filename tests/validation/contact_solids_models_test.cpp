@@ -13,7 +13,7 @@ namespace {
 
 /// Impacts of bodies, stops of joints and surfaces of solids, solved together in a step.
 TEST(ContactSolidsModel, TrolleyOnlyLosesEnergyAndItsBalanceIsExact) {
-  Simulation simulation(read_model(source_dir() + "/tests/validation/data/trolley.yaml"));
+  Simulation simulation(io::read_model(source_dir() + "/tests/validation/data/trolley.yaml"));
   const auto total = [&] { return simulation.balance().kinetic + simulation.balance().potential; };
   const auto probed = [&](std::size_t k) {
     const ProbeSpec& probe = simulation.model().output.probes.at(k);

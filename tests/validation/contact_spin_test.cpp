@@ -23,7 +23,7 @@ TEST(ContactSpin, TippeTopTurnsOver) {
   // The middle of the ball is at +a on the axis of the body, whose origin is the centre of mass.
   start.r = Vec3(0.0, 0.0, R) - start.q * Vec3(0.0, 0.0, a);
   const double J = 131.0 / 350.0 * m * R * R;
-  const int top = s.add("top", contact::sphere("top", 2.0 * R, {{0.0, 0.0, a}, Mat3::Identity()}),
+  const int top = s.add("top", geometry::sphere("top", 2.0 * R, {{0.0, 0.0, a}, Mat3::Identity()}),
                         m, {J, J, 0.4 * m * R * R}, start);
   s.add_floor();
   contact::ContactLaw law;
@@ -106,12 +106,13 @@ TEST(ContactSpin, PainleveRodIsArrested) {
       const double half = 1.0, angle = 1.0;
       BodyMotion start = at({0.0, 0.0, half * std::sin(angle) + 4.9e-4}, {v, 0.0, 0.0});
       start.q = Quat(Eigen::AngleAxisd(-angle, Vec3::UnitY()));
-      const int rod = s.add(
-          "rod",
-          contact::capsule("rod", 1e-4, 2.0 * half,
-                           {Vec3::Zero(),
-                            Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX()).toRotationMatrix()}),
-          1.0, {1e-3, 1.0 / 3.0, 1.0 / 3.0}, start);
+      const int rod =
+          s.add("rod",
+                geometry::capsule(
+                    "rod", 1e-4, 2.0 * half,
+                    {Vec3::Zero(),
+                     Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX()).toRotationMatrix()}),
+                1.0, {1e-3, 1.0 / 3.0, 1.0 / 3.0}, start);
       s.add_floor();
       contact::ContactLaw law;
       law.friction.mu = 2.0;

@@ -247,7 +247,7 @@ TEST(Controllers, ContinueBitForBitAfterARestart) {
         Simulation first = made(text);
         while (first.time() < cut) ASSERT_TRUE(first.step(1.0).accepted);
         const std::string bytes = state_bytes(first.system(), first.state());
-        Simulation second(read_model_text(text, "model.yaml", {}),
+        Simulation second(io::read_model_text(text, "model.yaml", {}),
                           state_from_bytes(first.system(), bytes, "here"));
         (void)finished(second);
         EXPECT_EQ(second.state_hash(), straight.state_hash()) << sample << cut;

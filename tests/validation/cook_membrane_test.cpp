@@ -20,11 +20,11 @@ namespace {
 
 constexpr double kShear = 80.1938;
 
-MaterialDescription compressible() {
+solids::MaterialDescription compressible() {
   return {.kind = "neo_hookean",
           .values = {{"youngs_modulus", 2.6 * kShear}, {"poisson_ratio", 0.3}}};
 }
-MaterialDescription nearly_incompressible() {
+solids::MaterialDescription nearly_incompressible() {
   return {.kind = "mooney_rivlin_uncoupled",
           .values = {{"c1", 0.5 * kShear}, {"c2", 0.0}, {"bulk_modulus", 5000.0 * kShear}}};
 }
@@ -35,9 +35,9 @@ struct Cook {
 };
 
 Cook cook(const std::string& element, const std::string& shape, int n,
-          const MaterialDescription& material) {
-  Mesh mesh = make_mesh("cook", "block",
-                        {{"size", {1.0, 1.0, 1.0}}, {"cells", {double(n), double(n), 1.0}}}, shape);
+          const solids::MaterialDescription& material) {
+  solids::Mesh mesh = solids::make_mesh(
+      "cook", "block", {{"size", {1.0, 1.0, 1.0}}, {"cells", {double(n), double(n), 1.0}}}, shape);
   for (Vec3& X : mesh.nodes) {
     const double s = X.x() + 0.5, t = X.y() + 0.5;
     X = {48.0 * s, 44.0 * s + t * (44.0 * (1.0 - s) + 16.0 * s), X.z()};
@@ -48,23 +48,23 @@ Cook cook(const std::string& element, const std::string& shape, int n,
     system.add_node({.position = X, .body = X.x() < 1e-9 ? kGround : kFreeNode});
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
     if (mesh.nodes[i].x() >= 1e-9) system.prescribe(i, 2, still);
-  SolidElementsDescription d;
+  solids::SolidElementsDescription d;
   d.name = "solids.membrane";
   d.element = element;
-  d.material = make_material("materials.m", material);
+  d.material = solids::make_material("materials.m", material);
   d.density = 1.0;
   d.connectivity = mesh.blocks.at(0).nodes;
   d.X = mesh.nodes;
-  system.add_elements(make_solid_elements(std::move(d)));
-  std::vector<LoadedFaces> faces;
-  Selection right;
-  right.kind = Selection::Kind::kPlane;
+  system.add_elements(solids::make_solid_elements(std::move(d)));
+  std::vector<solids::LoadedFaces> faces;
+  solids::Selection right;
+  right.kind = solids::Selection::Kind::kPlane;
   right.normal = Vec3::UnitX();
-  right.level = Selection::Level::kMax;
-  for (const FaceBlock& block : select_faces("right", mesh, {right}).blocks)
+  right.level = solids::Selection::Level::kMax;
+  for (const solids::FaceBlock& block : solids::select_faces("right", mesh, {right}).blocks)
     faces.push_back({block.type, block.nodes});
-  system.add_elements(
-      make_traction("loads.shear", faces, mesh.nodes, test::constant({0, 100.0 / 16.0, 0})));
+  system.add_elements(solids::make_traction("loads.shear", faces, mesh.nodes,
+                                            test::constant({0, 100.0 / 16.0, 0})));
   system.finish();
   State state = system.initial_state();
   Cook result;

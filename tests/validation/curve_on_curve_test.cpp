@@ -203,7 +203,7 @@ TEST(CurveOnCurve, KeepsTheCentresOfTwoCirclesApart) {
 }
 
 TEST(CurveOnCurve, EndsWhereACurveEnds) {
-  Simulation s(read_model_text(
+  Simulation s(io::read_model_text(
       flat_faced("bodies: [cam, follower], at: [[0, 0, 0], [0, 80 mm, 0]], " + std::string(kDisc) +
                      ", other_points: [[-15 mm, 0, 0], [0, 0, 0], [15 mm, "
                      "0, 0]]",
@@ -249,8 +249,8 @@ TEST(CurveOnCurve, EndsWhereCurvaturesAreEqual) {
   // The centre starts at the polar angle π of the ellipse's axes and turns against the drive.
   const double fit = (std::atan2(y, x) + kPi) / kOmega;
   for (const Step& step : kAtSteps) {
-    Simulation run(read_model_text(in_a_ring("0.05*cos(s)", "0.04*sin(s)"), "curves.yaml",
-                                   {std::string("variables.h=") + step.text}));
+    Simulation run(io::read_model_text(in_a_ring("0.05*cos(s)", "0.04*sin(s)"), "curves.yaml",
+                                       {std::string("variables.h=") + step.text}));
     const RunSummary summary = run.run();
     EXPECT_EQ(summary.end, RunEnd::not_converged) << step.text;
     EXPECT_LE(run.time(), fit + 1e-5) << step.text;
@@ -264,7 +264,7 @@ TEST(CurveOnCurve, DoesNotStartWhereCurvaturesAreEqual) {
   std::string message;
   try {
     Simulation run(
-        read_model_text(in_a_ring("0.055*cos(s) - 0.005", "0.055*sin(s)"), "curves.yaml"));
+        io::read_model_text(in_a_ring("0.055*cos(s) - 0.005", "0.055*sin(s)"), "curves.yaml"));
     message = run.run().message;
     EXPECT_EQ(run.time(), 0.0);
   } catch (const std::exception& e) {
@@ -276,7 +276,7 @@ TEST(CurveOnCurve, DoesNotStartWhereCurvaturesAreEqual) {
 TEST(CurveOnCurve, ReportsInvalidCurves) {
   const auto message = [](const std::string& contact) {
     try {
-      (void)read_model_text(
+      (void)io::read_model_text(
           flat_faced("bodies: [cam, follower], at: [[0, 0, 0], [0, 80 mm, 0]], " + contact,
                      "speed: 10 rad/s", "1 s"),
           "curves.yaml");

@@ -20,8 +20,8 @@ namespace {
 using Complex = std::complex<double>;
 using ::testing::HasSubstr;
 
-ModesReport modes_of(const std::string& text, const Overrides& overrides = {}) {
-  const ModalAnalysis analysis(read_model_text(text, "model.yaml", overrides));
+ModesReport modes_of(const std::string& text, const io::Overrides& overrides = {}) {
+  const ModalAnalysis analysis(io::read_model_text(text, "model.yaml", overrides));
   EXPECT_TRUE(analysis.converged()) << analysis.message();
   return analysis.report();
 }

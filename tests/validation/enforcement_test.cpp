@@ -77,7 +77,7 @@ TEST(Penalty, IsOfOrderTwoWithNumericalDamping) {
 // Two springs of 800 N/m, three of 50 N m/rad about axes of J = 0.1, 0.2, 0.3; and the free slide.
 TEST(Penalty, GivesTheFrequenciesOfItsSprings) {
   for (const double factor : {1.0, 1e4}) {  // up to nearly rigid springs
-    const ModalAnalysis modes(read_model_text(
+    const ModalAnalysis modes(io::read_model_text(
         cart("", "type: modes, count: 6"), "model.yaml",
         {format("joints.rail.enforcement.stiffness={:.17g}", 800.0 * factor),
          format("joints.rail.enforcement.turning_stiffness={:.17g}", 50.0 * factor)}));
@@ -111,7 +111,7 @@ TEST(Penalty, GivesTheFrequenciesOfManySprings) {
         "{{type: penalty, stiffness: {1:.17g}, turning_stiffness: {2:.17g}}}}}\n",
         i, 2.0 * w2, 0.1 * w2);
   }
-  const ModalAnalysis modes(read_model_text(
+  const ModalAnalysis modes(io::read_model_text(
       "format: 1\n" + bodies + joints + "analysis: {type: modes, count: 18}\n", "model.yaml", {}));
   ASSERT_TRUE(modes.converged()) << modes.message();
   ASSERT_EQ(modes.report().modes.size(), 18U);
@@ -255,7 +255,7 @@ output: {hdf5: false}
 TEST(Penalty, TendsToTheExactJoint) {
   for (const char* rho : {"1", "0.5"})
     for (const char* h : {"2 ms", "0.5 ms", "0.1 ms"}) {
-      const Overrides at{std::string("h=") + h, std::string("analysis.rho_inf=") + rho};
+      const io::Overrides at{std::string("h=") + h, std::string("analysis.rho_inf=") + rho};
       Simulation exact = made(four_bar(""), at);
       finished(exact);
       const auto error = [&](double k) {

@@ -91,7 +91,7 @@ TEST(Events, ReleaseAPendulumAtAnAngle) {
 // after it.
 TEST(Events, AreLocatedToRoundOff) {
   for (const char* more : {"", "analysis.rho_inf=0.6", "analysis.order=4", "analysis.step=auto"}) {
-    Overrides overrides;
+    io::Overrides overrides;
     if (*more != '\0') overrides.emplace_back(more);
     Simulation s = made(
         Pendulum::text("events: {release: {when: {joint: pivot, channel: rz, above: 80 deg}, off: "

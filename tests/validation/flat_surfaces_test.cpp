@@ -21,8 +21,8 @@ using namespace test;
 constexpr double kWidth = 0.6, kMargin = 0.35;
 
 /// Closed slab with its upper side in z = 0; diagonals alternate from cell to cell.
-TriangleSurface slab(double cell, double length) {
-  TriangleSurface s;
+geometry::TriangleSurface slab(double cell, double length) {
+  geometry::TriangleSurface s;
   const int nx = static_cast<int>(std::ceil(length / cell)),
             ny = static_cast<int>(std::ceil(kWidth / cell));
   const auto id = [&](int level, int i, int j) { return (level * (ny + 1) + j) * (nx + 1) + i; };
@@ -56,15 +56,16 @@ TriangleSurface slab(double cell, double length) {
   return s;
 }
 
-std::vector<Shape> surfaces(double cell, double length) {
+std::vector<geometry::Shape> surfaces(double cell, double length) {
   const int nx = static_cast<int>(length / cell) + 2, ny = static_cast<int>(kWidth / cell) + 2;
   std::vector<Vec3> corners;
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
       for (const double z : {-0.5, 0.0}) corners.push_back({length * x, kWidth * y, z});
-  return {plane(),
-          height_field("field", nx, cell, std::vector<double>(static_cast<std::size_t>(nx * ny))),
-          mesh("mesh", slab(cell, length)), hull("hull", corners)};
+  return {geometry::plane(),
+          geometry::height_field("field", nx, cell,
+                                 std::vector<double>(static_cast<std::size_t>(nx * ny))),
+          geometry::mesh("mesh", slab(cell, length)), geometry::hull("hull", corners)};
 }
 
 enum class Moving { sliding_ball, sliding_box, sliding_capsule, falling_ball, falling_box };
@@ -76,18 +77,19 @@ double difference(double cell, double speed, double dt, double mu, Moving moving
   BodyMotion by_plane;
   double most = 0.0;
   int index = 0;
-  for (const Shape& surface : surfaces(cell, way + 2.0 * kMargin)) {
+  for (const geometry::Shape& surface : surfaces(cell, way + 2.0 * kMargin)) {
     Scene s;
     const bool falls = moving == Moving::falling_ball || moving == Moving::falling_box;
     const Vec3 v = speed * Vec3(std::cos(0.03), std::sin(0.03), 0.0) - Vec3(0.0, 0.0, falls);
     const BodyMotion start = at({0.0131 - 0.5 * way, 0.0072, falls ? 0.13 : 0.1}, v);
     const Mat3 lies = (Mat3() << 0, 0, 1, 0, 1, 0, -1, 0, 0).finished();
-    const int body = moving == Moving::sliding_ball || moving == Moving::falling_ball
-                         ? s.add_ball("ball", 0.1, 1.0, start)
-                     : moving == Moving::sliding_capsule
-                         ? s.add("capsule", capsule("capsule", 0.2, 0.2, {Vec3::Zero(), lies}), 1.0,
-                                 {0.004, 0.01, 0.01}, start)
-                         : s.add_box("box", {0.3, 0.2, 0.2}, 1.0, start);
+    const int body =
+        moving == Moving::sliding_ball || moving == Moving::falling_ball
+            ? s.add_ball("ball", 0.1, 1.0, start)
+        : moving == Moving::sliding_capsule
+            ? s.add("capsule", geometry::capsule("capsule", 0.2, 0.2, {Vec3::Zero(), lies}), 1.0,
+                    {0.004, 0.01, 0.01}, start)
+            : s.add_box("box", {0.3, 0.2, 0.2}, 1.0, start);
     s.contacts->add_shape({kGround, "ground", surface});
     // The default tolerance, and so the depth of bodies at rest, depends on the size of triangles.
     s.law(mu, falls ? 0.5 : 0.0, 4e-6);
@@ -143,7 +145,7 @@ TEST_P(SwingOnTriangles, KeepsItsAmplitudeOverTenSwings) {
   const double reach = (R - rho) * std::sin(A);
   const int ball = s.add_ball(
       "ball", rho, 1.0, at(reach * along + Vec3(0.0, 0.0013, R - (R - rho) * std::cos(A) + 1e-6)));
-  s.contacts->add_shape({kGround, "ground", height_field("ground", nx, cell, z)});
+  s.contacts->add_shape({kGround, "ground", geometry::height_field("ground", nx, cell, z)});
   s.law(0.0, 0.0);
   s.begin(dt);
   ASSERT_TRUE(s.run(std::floor(9.75 * period / dt) * dt)) << s.last.text();

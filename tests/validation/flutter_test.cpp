@@ -13,8 +13,8 @@
 namespace polhode::flutter_tests {
 namespace {
 
-ModesReport modes_of(const std::string& text, const Overrides& overrides = {}) {
-  const ModalAnalysis analysis(read_model_text(text, "column.yaml", overrides));
+ModesReport modes_of(const std::string& text, const io::Overrides& overrides = {}) {
+  const ModalAnalysis analysis(io::read_model_text(text, "column.yaml", overrides));
   EXPECT_TRUE(analysis.converged()) << analysis.message();
   return analysis.report();
 }

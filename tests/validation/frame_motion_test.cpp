@@ -70,8 +70,8 @@ TEST(PrescribedMotion, HoldsABodyWithTheForcesOfItsMotion) {
       return placed(t) * (J * Vec3(W(2, 1), W(0, 2), W(1, 0)));
     };
     for (const char* step : {"50 ms", "2 ms", "0.5 ms"}) {
-      Simulation s(read_model_text(shaken(translation + c.rotation), "table.yaml",
-                                   {std::string("variables.h=") + step}));
+      Simulation s(io::read_model_text(shaken(translation + c.rotation), "table.yaml",
+                                       {std::string("variables.h=") + step}));
       double worst_place = 0.0, worst_force = 0.0, worst_moment = 0.0;
       const auto look = [&](Simulation& now) {
         const double t = now.time();
@@ -105,7 +105,7 @@ TEST(PrescribedMotion, HoldsABodyWithTheForcesOfItsMotion) {
 // Part of the motion prescribed, the rest free: a ball thrown in x and z that follows y.
 TEST(PrescribedMotion, LeavesFreeWhatIsNotGiven) {
   for (const char* step : {"50 ms", "0.5 ms"}) {
-    Simulation s(read_model_text(
+    Simulation s(io::read_model_text(
         R"yaml(
 format: 1
 gravity: [0, 0, -9.81]
@@ -153,7 +153,7 @@ output: {hdf5: false}
 TEST(PrescribedMotion, BetweenFreeBodiesKeepsMomentaAndTheEnergyBalance) {
   for (const int order : {2, 4})
     for (const char* h : {"100 ms", "20 ms", "2 ms"}) {
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           kSatellite, "satellite.yaml",
           {std::string("variables.h=") + h, "analysis.order=" + std::to_string(order)}));
       const RunSummary r = s.run();
@@ -169,7 +169,7 @@ TEST(PrescribedMotion, HasTheOrderOfTheMethod) {
   for (const int order : {2, 4, 6, 8}) {
     std::vector<Vec3> r;
     for (const char* h : {"40 ms", "20 ms", "10 ms"}) {
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           kSatellite, "satellite.yaml",
           {std::string("variables.h=") + h, "analysis.order=" + std::to_string(order)}));
       const RunSummary run = s.run();
@@ -186,7 +186,7 @@ TEST(PrescribedMotion, HasTheOrderOfTheMethod) {
 // one.
 TEST(PrescribedMotion, HasTheVelocityOfTheDriveAfterKinks) {
   for (const char* h : {"30 ms", "2 ms", "0.2 ms"}) {
-    Simulation s(read_model_text(
+    Simulation s(io::read_model_text(
         R"yaml(
 format: 1
 gravity: [0, 0, -9.81]
@@ -212,7 +212,7 @@ output: {hdf5: false}
 
 // A spring of 100 N/m pulled by 0.3 m, and a bar turned by a torsional spring's angle.
 TEST(PrescribedMotion, FollowsTheLoadFactorInStatics) {
-  Simulation s(read_model_text(R"yaml(
+  Simulation s(io::read_model_text(R"yaml(
 format: 1
 bodies:
   grip: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0], motion: {x: 0.3, y: 0, z: 0, rotation_vector: [0, 90 deg, 0]}}
@@ -220,7 +220,7 @@ loads: {spring: {type: spring_damper, bodies: [ground, grip], at: [[0, 0, 0], [1
 analysis: {type: statics}
 output: {hdf5: false}
 )yaml",
-                               "statics.yaml"));
+                                   "statics.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_NEAR(s.body(0).r.x(), 1.3, 1e-12);
@@ -233,7 +233,7 @@ output: {hdf5: false}
 TEST(PrescribedMotion, ReportsInvalidInput) {
   const auto refused = [](const std::string& motion, const std::string& what) {
     try {
-      (void)read_model_text(shaken(motion), "table.yaml");
+      (void)io::read_model_text(shaken(motion), "table.yaml");
       ADD_FAILURE() << motion;
     } catch (const std::exception& e) {
       EXPECT_NE(std::string(e.what()).find(what), std::string::npos) << e.what();

@@ -35,7 +35,7 @@ output: {hdf5: false, every: 0.1 s}
 TEST(InverseDynamics, GivesTheMomentsOfLagrangesEquations) {
   for (const char* h : {"h=0.1", "h=0.005", "h=0.0005"})
     for (const char* rho : {"rho=1", "rho=0.5"}) {
-      Simulation s(read_model_text(kArm, "arm.yaml", {h, rho}));
+      Simulation s(io::read_model_text(kArm, "arm.yaml", {h, rho}));
       const RunSummary r = s.run([&](Simulation& now) {
         const double t = now.time();
         const double q1 = 0.4 * std::sin(3 * t) + 0.2 * t, q2 = 0.9 * t * t - 0.1 * t * t * t;

@@ -71,31 +71,31 @@ TEST(LimitLoad, OfAShallowRoofIsReachedAndPassedBySnapThrough) {
 /// largest at λ = 1/√3.
 TEST(LimitLoad, OfASolidOfSaintVenantsMaterialIsThatOfItsClosedForm) {
   const double limit = 1.0 / (3.0 * std::sqrt(3.0));
-  const Mesh mesh =
-      make_mesh("bar", "block", {{"size", {0.5, 0.5, 1}}, {"cells", {1, 1, 2}}}, "hex20");
+  const solids::Mesh mesh =
+      solids::make_mesh("bar", "block", {{"size", {0.5, 0.5, 1}}, {"cells", {1, 1, 2}}}, "hex20");
   System system;
   for (const Vec3& X : mesh.nodes)
     system.add_node({.position = X, .body = X.z() < -0.5 + 1e-9 ? kGround : kFreeNode});
-  SolidElementsDescription d;
+  solids::SolidElementsDescription d;
   d.name = "solids.bar";
   d.element = "hex20";
-  d.material = make_material(
+  d.material = solids::make_material(
       "materials.m",
       {.kind = "elastic", .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}});
   d.density = 1.0;
   d.connectivity = mesh.blocks.at(0).nodes;
   d.X = mesh.nodes;
-  system.add_elements(make_solid_elements(std::move(d)));
+  system.add_elements(solids::make_solid_elements(std::move(d)));
   // Guided, so that it does not buckle sideways.
   const auto still = std::make_shared<test::Constant>(0.0);
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
     if (mesh.nodes[static_cast<std::size_t>(i)].z() >= -0.5 + 1e-9)
       for (const int c : {0, 1}) system.prescribe(i, c, still);
-  std::vector<LoadedFaces> top;
-  for (const FaceBlock& block : mesh.surfaces.at("zmax").blocks)
+  std::vector<solids::LoadedFaces> top;
+  for (const solids::FaceBlock& block : mesh.surfaces.at("zmax").blocks)
     top.push_back({block.type, block.nodes});
   system.add_elements(
-      make_traction("loads.press", top, mesh.nodes, test::constant({0, 0, -2.0 * limit})));
+      solids::make_traction("loads.press", top, mesh.nodes, test::constant({0, 0, -2.0 * limit})));
   system.finish();
   State state = system.initial_state();
   const StaticReport report = solve_statics(system, state);

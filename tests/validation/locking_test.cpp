@@ -20,7 +20,7 @@ struct Solved {
 
 Solved solve(const std::string& text, const std::string& element, double poisson, int n,
              int component) {
-  Simulation s(read_model_text(
+  Simulation s(io::read_model_text(
       text, "solid.yaml",
       {"solids.part.element=" + element, format("materials.m.poisson_ratio={}", poisson),
        "variables.n=" + std::to_string(n)}));

@@ -23,8 +23,8 @@ struct Driven {
   std::vector<std::vector<double>> report;
 };
 
-Driven run(const std::string& text, const Overrides& overrides = {}) {
-  Simulation s(read_model_text(text, "driven.yaml", overrides));
+Driven run(const std::string& text, const io::Overrides& overrides = {}) {
+  Simulation s(io::read_model_text(text, "driven.yaml", overrides));
   Driven d;
   const auto look = [&](Simulation& now) {
     d.t.push_back(now.time());
@@ -128,7 +128,7 @@ TEST(Motor, DrivesACartWithTheOrderOfTheMethodAndItsWork) {
   for (const int order : {2, 4, 6}) {
     std::vector<double> x;
     for (const char* h : {"20 ms", "10 ms", "5 ms"}) {
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           kCart, "cart.yaml",
           {std::string("variables.h=") + h, "analysis.order=" + std::to_string(order)}));
       const RunSummary r = s.run();
@@ -145,7 +145,7 @@ TEST(Motor, DrivesACartWithTheOrderOfTheMethodAndItsWork) {
 // halves, down to round-off.
 TEST(Motor, DrivesACartWithOrderEight) {
   const auto x_of = [](const char* h, int order) {
-    Simulation s(read_model_text(
+    Simulation s(io::read_model_text(
         kCart, "cart.yaml",
         {std::string("variables.h=") + h, "analysis.order=" + std::to_string(order)}));
     const RunSummary r = s.run();
@@ -203,7 +203,7 @@ analysis: {type: dynamics, duration: 2 s, step: h}
 output: {hdf5: false}
 )";
   for (const char* h : {"10 ms", "1 ms"}) {
-    Simulation s(read_model_text(kText, "slider.yaml", {std::string("variables.h=") + h}));
+    Simulation s(io::read_model_text(kText, "slider.yaml", {std::string("variables.h=") + h}));
     const int slider = s.model().body_index("slider");
     const auto look = [&](Simulation& now) {
       const double phi = 10.0 * now.time(), r = 0.2 * std::sin(phi);
@@ -217,7 +217,7 @@ output: {hdf5: false}
 }
 
 TEST(Motor, HoldsAnArmInStatics) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies: {arm: {mass: 2, inertia: [0.01, 0.02, 0.02], position: [0.5, 0, 0]}}
@@ -226,7 +226,7 @@ loads: {motor: {type: rotary_motor, joint: hinge, angle: 60 deg}}
 analysis: {type: statics}
 output: {hdf5: false}
 )",
-                               "statics.yaml"));
+                                   "statics.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   const std::vector<double> report = s.load(0);
@@ -234,9 +234,9 @@ output: {hdf5: false}
   EXPECT_NEAR(report[1], -2.0 * kG * 0.5 * std::cos(std::numbers::pi / 3.0), 1e-8);
 }
 
-std::string fault(const std::string& text, const Overrides& overrides = {}) {
+std::string fault(const std::string& text, const io::Overrides& overrides = {}) {
   try {
-    Simulation s(read_model_text(text, "driven.yaml", overrides));
+    Simulation s(io::read_model_text(text, "driven.yaml", overrides));
   } catch (const std::exception& e) {
     return e.what();
   }

@@ -60,7 +60,7 @@ TEST(NonsmoothContact, FrictionAddsNoEnergyToARod) {
       BodyMotion start = at({0.0, 0.0, 0.015 + 0.5 * std::cos(angle)});
       start.q = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
       start.v = {slip, 0.0, -1.0};
-      const int rod = s.add("rod", contact::capsule("rod", 0.02, 1.02), 1.0,
+      const int rod = s.add("rod", geometry::capsule("rod", 0.02, 1.02), 1.0,
                             {1.0 / 12.0, 1.0 / 12.0, 1e-4}, start);
       s.add_floor();
       s.law(0.5, 1.0);

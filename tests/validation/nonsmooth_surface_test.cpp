@@ -87,8 +87,9 @@ TEST(NonsmoothSurface, TrianglesOfAPlaneActAsThePlane) {
 }
 
 /// Closed surface of quadrilaterals, four corners each, counterclockwise from outside.
-TriangleSurface of_quads(std::vector<Vec3> points, const std::vector<std::array<int, 4>>& quads) {
-  TriangleSurface s;
+geometry::TriangleSurface of_quads(std::vector<Vec3> points,
+                                   const std::vector<std::array<int, 4>>& quads) {
+  geometry::TriangleSurface s;
   s.points = std::move(points);
   for (const auto& q : quads) {
     s.triangles.push_back({q[0], q[1], q[2]});
@@ -105,7 +106,7 @@ void add_square(std::vector<Vec3>& points, double half, double z) {
 }
 
 /// A block, 0.4 m high, with a square pocket in it, 0.3 m deep, whose bottom lies in z = 0.
-TriangleSurface pocket(double half) {
+geometry::TriangleSurface pocket(double half) {
   std::vector<Vec3> points;
   add_square(points, half + 0.1, -0.1);
   add_square(points, half + 0.1, 0.3);

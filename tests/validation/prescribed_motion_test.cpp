@@ -42,7 +42,7 @@ struct Seen {
 };
 
 Seen run(const std::string& text) {
-  Simulation s(read_model_text(text, "bar.yaml"));
+  Simulation s(io::read_model_text(text, "bar.yaml"));
   Seen seen;
   seen.summary = s.run();
   EXPECT_EQ(seen.summary.end, RunEnd::finished) << seen.summary.message;
@@ -92,7 +92,8 @@ TEST(PrescribedMotion, SuppliedWorkIsTheEnergyForAnyDrive) {
 // Velocities at the ends of the drive are its rates from the first step on.
 TEST(PrescribedMotion, NodesMoveAtTheRateOfTheDrive) {
   for (const char* step : kSteps) {
-    Simulation s(read_model_text(bar("\"0.01*sin(30*t) + 0.2*t\"", "", step, "0.2 s"), "bar.yaml"));
+    Simulation s(
+        io::read_model_text(bar("\"0.01*sin(30*t) + 0.2*t\"", "", step, "0.2 s"), "bar.yaml"));
     int driven = -1;
     for (int i = 0; i < s.system().nodes().count(); ++i)
       if (std::abs(s.system().nodes()[i].position.x() - 1.0) < 1e-9) driven = i;

@@ -30,21 +30,21 @@ Model with(Model model, double duration, std::optional<double> step,
 
 /// An example with contact, whose points have histories of bristles, gaps and approach speeds.
 Model touching(const std::string& name, double duration) {
-  Model model = read_model(source_dir() + "/examples/" + name + "/model.yaml");
+  Model model = io::read_model(source_dir() + "/examples/" + name + "/model.yaml");
   model.analysis.duration = duration;
   return model;
 }
 
 /// Bodies, surfaces of solids and stops of joints, all of them in contact.
 Model trolley() {
-  Model model = read_model(source_dir() + "/tests/validation/data/trolley.yaml");
+  Model model = io::read_model(source_dir() + "/tests/validation/data/trolley.yaml");
   model.analysis.duration = 0.25;
   return model;
 }
 
 /// A rope that slides over a drum, from a beam to a ball at its end.
 Model rope(const std::string& drum = "{cylinder: [0.1, 0.1]}") {
-  return read_model_text(
+  return io::read_model_text(
       R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -65,7 +65,7 @@ analysis: {duration: 0.4 s, step: 1 ms}
 
 /// A rope that slides over a soft block, with a ball at its end.
 Model rope_on_pad() {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
@@ -79,7 +79,7 @@ cables:
 contacts: {default: {friction: 0.3, restitution: 0.5}}
 analysis: {duration: 30 ms, step: 1 ms}
 )",
-                         "pad.yaml");
+                             "pad.yaml");
 }
 
 /// The same with the impulse law, whose points have histories of impulses.
@@ -90,7 +90,7 @@ Model by_impulses(Model model) {
 
 /// Round bodies and a box on a height field, and a pen that leans in a tube.
 Model on_triangles() {
-  return read_model_text(R"(format: 1
+  return io::read_model_text(R"(format: 1
 gravity: [0, 0, -9.81]
 bodies:
   field: {fixed: true, shape: {height_field: {spacing: 0.1, heights: [[0, 0, 0, 0, 0], [0, 0.02, 0, 0.01, 0], [0, 0, 0, 0, 0], [0, 0.01, 0, 0.02, 0], [0, 0, 0, 0, 0]]}}}
@@ -103,7 +103,7 @@ bodies:
 contacts: {default: {friction: 0.3}}
 analysis: {duration: 0.2 s, step: 1 ms}
 )",
-                         "triangles.yaml");
+                             "triangles.yaml");
 }
 
 std::vector<RestartCase> cases() {
@@ -152,9 +152,9 @@ TEST_P(Restart, FromACheckpointEndsInTheSameBits) {
   while (straight.time() < model.analysis.duration * (1.0 - 1e-12)) {
     ASSERT_TRUE(straight.step(model.analysis.duration).accepted);
     if (straight.summary().steps == half)
-      write_checkpoint(file, model, straight.system(), straight.state());
+      io::write_checkpoint(file, model, straight.system(), straight.state());
   }
-  Simulation continued(model, read_checkpoint(file, model, straight.system()));
+  Simulation continued(model, io::read_checkpoint(file, model, straight.system()));
   EXPECT_EQ(continued.summary().steps, half);
   while (continued.time() < model.analysis.duration * (1.0 - 1e-12))
     ASSERT_TRUE(continued.step(model.analysis.duration).accepted);

@@ -50,8 +50,8 @@ Vec observed(const Simulation& s) {
 
 Deviation coin_deviation(int order, const std::string& h) {
   return test::deviation_from(Reference::read("rolling_coin"),
-                              read_model_text(coin(order), "coin.yaml", {"variables.h=" + h}), 0.5,
-                              [](const Simulation& s) {
+                              io::read_model_text(coin(order), "coin.yaml", {"variables.h=" + h}),
+                              0.5, [](const Simulation& s) {
                                 Vec x = observed(s);
                                 x.tail<3>() *= 100.0;
                                 return x;
@@ -77,14 +77,14 @@ TEST(Rolling, FollowsTheReferenceSolutionOfACoin) {
 
 TEST(Rolling, ConvergesWithEachOrder) {
   const Simulation exact = [] {
-    Simulation s(
-        read_model_text(coin(6), "coin.yaml", {"variables.h=0.5 ms", "analysis.duration=0.2 s"}));
+    Simulation s(io::read_model_text(coin(6), "coin.yaml",
+                                     {"variables.h=0.5 ms", "analysis.duration=0.2 s"}));
     (void)s.run();
     return s;
   }();
   for (const int order : {2, 4, 6}) {
     const auto error = [&](int n) {
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           coin(order), "coin.yaml",
           {"variables.h=" + std::to_string(200.0 / n) + " ms", "analysis.duration=0.2 s"}));
       const RunSummary summary = s.run();
@@ -157,7 +157,7 @@ TEST(Rolling, CirclesOnATurntable) {
                R = v / (2.0 / 7.0 * Omega);
   for (const double h : {0.02, 0.005, 0.001}) {
     const int n = static_cast<int>(std::ceil(0.5 * T / h));
-    Simulation s(read_model_text(R"(
+    Simulation s(io::read_model_text(R"(
 format: 1
 bodies:
   table: {mass: 5, inertia: [1, 1, 1], angular_velocity: [0, 0, 6]}
@@ -166,12 +166,11 @@ joints: {axle: {type: revolute, bodies: [ground, table], at: [0, 0, 0], axis: z}
 loads:
   drive: {type: rotary_motor, joint: axle, speed: 6 rad/s}
   it: {type: rolling, bodies: [table, ball], at: [[0, 0, 0], [0, 0, 0.1]], radius: 0.1, edge_radius: 0.1}
-analysis: {type: dynamics, duration: )" +
-                                     std::to_string(0.5 * T) +
-                                     " s, step: " + std::to_string(0.5 * T / n) + R"( s}
+analysis: {type: dynamics, duration: )" + std::to_string(0.5 * T) +
+                                         " s, step: " + std::to_string(0.5 * T / n) + R"( s}
 output: {hdf5: false}
 )",
-                                 "table.yaml"));
+                                     "table.yaml"));
     const RunSummary summary = s.run();
     // Half a circle of radius R to the left: at (0, 2R), moving in the opposite direction.
     const BodyMotion ball = s.body(1);
@@ -204,7 +203,7 @@ output: {hdf5: false}
 
 TEST(Rolling, ContinuesAfterARestartBitForBit) {
   const auto model = [] {
-    return read_model_text(coin(2), "coin.yaml", {"analysis.duration=0.1 s"});
+    return io::read_model_text(coin(2), "coin.yaml", {"analysis.duration=0.1 s"});
   };
   Simulation straight(model());
   for (int k = 0; k < 100; ++k) ASSERT_TRUE(straight.step(1e3).accepted);
@@ -219,7 +218,7 @@ TEST(Rolling, ContinuesAfterARestartBitForBit) {
 
 // A coin that falls flat on its side.
 TEST(Rolling, EndsWhereAWheelFallsFlat) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies: {coin: {mass: 1, inertia: [2.5e-3, 5e-3, 2.5e-3], position: [0, 0.05, 0.0866025], orientation: {axis: x, angle: -30 deg}}}
@@ -227,7 +226,7 @@ loads: {it: {type: rolling, bodies: [ground, coin], at: [[0, 0, 0], [0, 0.05, 0.
 analysis: {type: dynamics, duration: 2 s, step: 1 ms}
 output: {hdf5: false}
 )",
-                               "coin.yaml"));
+                                   "coin.yaml"));
   const RunSummary summary = s.run();
   EXPECT_EQ(summary.end, RunEnd::not_converged);
   EXPECT_THAT(summary.message, testing::HasSubstr("'it'"));

@@ -35,7 +35,7 @@ struct Drum {
     for (int k = 1; k <= leg; ++k) path.emplace_back(corner, 0.0, -k * piece);
     const double length = piece * static_cast<double>(path.size() - 1);
     rope_mass = kPerLength * length;
-    model = read_model_text(format(R"(
+    model = io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies:
@@ -48,9 +48,9 @@ cables:
 contacts: {{default: {{friction: {7:g}, restitution: 1}}}}
 analysis: {{step: 0.5 ms, duration: {8:g}}}
 )",
-                                   -corner, -leg * piece, heavy_mass, corner, kPerLength, length,
-                                   path.size() - 1, mu, duration, shape),
-                            "drum.yaml");
+                                       -corner, -leg * piece, heavy_mass, corner, kPerLength,
+                                       length, path.size() - 1, mu, duration, shape),
+                                "drum.yaml");
     const int first = model.body_index("rope.0");  // the rope of the file is straight
     for (std::size_t k = 0; k < path.size(); ++k)
       model.bodies[static_cast<std::size_t>(first) + k].position = path[k];

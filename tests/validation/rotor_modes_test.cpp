@@ -20,8 +20,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-ModesReport modes_of(const std::string& text, const Overrides& overrides = {}) {
-  const ModalAnalysis analysis(read_model_text(text, "rotor.yaml", overrides));
+ModesReport modes_of(const std::string& text, const io::Overrides& overrides = {}) {
+  const ModalAnalysis analysis(io::read_model_text(text, "rotor.yaml", overrides));
   EXPECT_TRUE(analysis.converged()) << analysis.message();
   // Freedoms with nearly no mass have high frequencies, which are accurate to some digits only.
   for (const std::string& warning : analysis.report().warnings)
@@ -88,7 +88,7 @@ TEST(RotorModes, OfAnOverhungDiscSplitByTheGyroscopicMoment) {
 }
 
 TEST(RotorModes, WarnThatModesOfAnAsymmetricRotorHoldForAnInstant) {
-  const ModalAnalysis rotor(read_model_text(kOverhung, "rotor.yaml", {"variables.flat=0.01"}));
+  const ModalAnalysis rotor(io::read_model_text(kOverhung, "rotor.yaml", {"variables.flat=0.01"}));
   ASSERT_FALSE(rotor.report().warnings.empty());
   EXPECT_NE(rotor.report().warnings[0].find("modes hold for this instant only"), std::string::npos);
 }

@@ -29,16 +29,16 @@ const std::string kBars[] = {"cylinder: [0.1, 2]", "tube: [0.1, 0.08, 2]"};
 /// @param motion  Its position and velocities.
 Simulation bar_on(const Rails& rails, const std::string& bar, const std::string& motion,
                   const std::string& contact, double step) {
-  return Simulation(
-      read_model_text(format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
-                             "  rails: {{fixed: true, shape: [{{{0}, position: [0, 0.3, -0.01]}}, "
-                             "{{{0}, position: [0, -0.3, -0.01]}}]}}\n"
-                             "  bar: {{shape: {{{1}}}, mass: 1, inertia: [0.33, 0.33, 0.00125], "
-                             "orientation: {{axis: x, angle: 90 deg}}, {2}}}\n"
-                             "contacts: {{default: {{{3}}}}}\n"
-                             "analysis: {{type: dynamics, duration: 1 s, step: {4} s}}\n",
-                             rails.shape, bar, motion, contact, step),
-                      "m.yaml"));
+  return Simulation(io::read_model_text(
+      format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+             "  rails: {{fixed: true, shape: [{{{0}, position: [0, 0.3, -0.01]}}, "
+             "{{{0}, position: [0, -0.3, -0.01]}}]}}\n"
+             "  bar: {{shape: {{{1}}}, mass: 1, inertia: [0.33, 0.33, 0.00125], "
+             "orientation: {{axis: x, angle: 90 deg}}, {2}}}\n"
+             "contacts: {{default: {{{3}}}}}\n"
+             "analysis: {{type: dynamics, duration: 1 s, step: {4} s}}\n",
+             rails.shape, bar, motion, contact, step),
+      "m.yaml"));
 }
 
 template <class Check>
@@ -94,7 +94,7 @@ TEST(RoundSides, RestInAGrooveWithFlushEnds) {
         SCOPED_TRACE(format("{} by {} at {} s", bar.shape, law, step));
         const double R = bar.radius, height = std::sqrt(3.0) * R;
         const std::string lies = "orientation: {axis: x, angle: 90 deg}";
-        Simulation s(read_model_text(
+        Simulation s(io::read_model_text(
             format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
                    "  left: {{fixed: true, shape: {{{0}}}, position: [-{1}, 0, 0], {2}}}\n"
                    "  right: {{fixed: true, shape: {{{0}}}, position: [{1}, 0, 0], {2}}}\n"

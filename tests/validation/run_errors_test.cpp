@@ -13,8 +13,8 @@
 namespace polhode::run_errors_tests {
 namespace {
 
-RunSummary run(const std::string& text, const Overrides& overrides = {}) {
-  Simulation s(read_model_text(text, "run.yaml", overrides));
+RunSummary run(const std::string& text, const io::Overrides& overrides = {}) {
+  Simulation s(io::read_model_text(text, "run.yaml", overrides));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   return r;
@@ -39,7 +39,7 @@ output: {hdf5: false}
 // @tests{step-error}
 TEST(RunErrors, OfAnOscillatorAreThoseOfTheMidpointRule) {
   for (const double h : {0.01, 1e-3, 1e-4}) {
-    Simulation s(read_model_text(kSpring, "run.yaml", {"variables.h=" + std::to_string(h)}));
+    Simulation s(io::read_model_text(kSpring, "run.yaml", {"variables.h=" + std::to_string(h)}));
     const RunSummary r = s.run();
     ASSERT_TRUE(r.errors);
     const double length = s.system().length_scale();
@@ -124,7 +124,7 @@ output: {hdf5: false}
 // A guide that is too short for its friction: the moment of a force causes more friction than the
 // force itself overcomes.
 TEST(RunErrors, NamesTheJointWhoseFrictionLocksIt) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, 0]
 bodies:
@@ -137,7 +137,7 @@ loads: {push: {type: force, body: slider, force: [0, 0, 3]}}
 analysis: {type: dynamics, duration: 0.3 s, step: 10 ms, min_step: 10 ms}
 output: {hdf5: false}
 )",
-                               "run.yaml"));
+                                   "run.yaml"));
   const RunSummary end = s.run();
   EXPECT_EQ(end.end, RunEnd::not_converged);
   EXPECT_NE(end.message.find("friction or a stop that locks joint 'guide'"), std::string::npos)

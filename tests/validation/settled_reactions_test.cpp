@@ -62,7 +62,7 @@ analysis: {duration: 1.5 s, step: 20 ms}
 output: {hdf5: false}
 )";
   for (const char* step : {"20 ms", "10 ms", "2 ms"}) {
-    Simulation s(read_model_text(text, "bar.yaml", {std::string("analysis.step=") + step}));
+    Simulation s(io::read_model_text(text, "bar.yaml", {std::string("analysis.step=") + step}));
     const RunSummary summary = s.run();
     ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
     EXPECT_NEAR(s.interface_reaction(0, 0).force.x(), 10.0, 2e-3) << step;
@@ -71,7 +71,7 @@ output: {hdf5: false}
   // Spinning freely: the hub moves around the common centre of mass, which moves as it did at the
   // start.
   for (const char* step : {"10 ms", "5 ms", "2 ms"}) {
-    Simulation s(read_model_text(
+    Simulation s(io::read_model_text(
         text, "bar.yaml",
         {std::string("analysis.step=") + step, "variables.spin=2", "loads.push.force=[0, 0, 0]"}));
     const RunSummary summary = s.run();

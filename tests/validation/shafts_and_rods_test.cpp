@@ -144,20 +144,19 @@ TEST(RevoluteSpherical, SwingsAPointMassAsAPendulum) {
   const double quarter = std::sqrt(L / g) * std::comp_ellint_1(std::sin(0.5 * start));
   for (const double h : {0.02, 0.002, 0.0005}) {
     const int n = static_cast<int>(std::ceil(quarter / h));
-    Simulation s(read_model_text(R"(
+    Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies: {bob: {mass: 2, point_mass: true, position: )" +
-                                     ("[" + std::to_string(L * std::sin(start)) + ", 0, " +
-                                      std::to_string(-L * std::cos(start)) + "]}") +
-                                     R"(}
+                                         ("[" + std::to_string(L * std::sin(start)) + ", 0, " +
+                                          std::to_string(-L * std::cos(start)) + "]}") +
+                                         R"(}
 joints: {rod: {type: revolute_spherical, bodies: [ground, bob], distance: 0.8, at_body: [[0, 0, 0], [0, 0, 0]], axis: -y, x_axis: -z}}
-analysis: {type: dynamics, duration: )" +
-                                     std::to_string(quarter) +
-                                     " s, step: " + std::to_string(quarter / n) + R"( s}
+analysis: {type: dynamics, duration: )" + std::to_string(quarter) +
+                                         " s, step: " + std::to_string(quarter / n) + R"( s}
 output: {hdf5: false}
 )",
-                                 "rod.yaml"));
+                                     "rod.yaml"));
     EXPECT_NEAR(s.joint(0).coordinates.at(0), start, 1e-6);
     const RunSummary summary = s.run();
     EXPECT_NEAR(s.joint(0).coordinates.at(0), 0.0, 10.0 * h * h + 1e-5);
@@ -208,8 +207,8 @@ TEST(SlackLink, LetsAFallingBodyReboundByTheRestitution) {
 
 TEST(SlackLink, CarriesItsBodyAtFullLengthWithoutRestitution) {
   for (const char* h : {"5 ms", "1 ms", "0.2 ms"}) {
-    Simulation s(read_model_text(leash(0.0), "leash.yaml",
-                                 {std::string("variables.h=") + h, "analysis.duration=1 s"}));
+    Simulation s(io::read_model_text(leash(0.0), "leash.yaml",
+                                     {std::string("variables.h=") + h, "analysis.duration=1 s"}));
     const RunSummary summary = s.run();
     EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
     EXPECT_NEAR(s.joint(0).coordinates.at(0), 0.5, 1.1e-4) << h;
@@ -219,13 +218,13 @@ TEST(SlackLink, CarriesItsBodyAtFullLengthWithoutRestitution) {
 
 TEST(SlackLink, RefusesPointsOutsideItsLimits) {
   try {
-    (void)read_model_text(R"(
+    (void)io::read_model_text(R"(
 format: 1
 bodies: {ball: {mass: 2, point_mass: true, position: [0, 0, -0.7]}}
 joints: {leash: {type: slack_link, bodies: [ground, ball], at: [[0, 0, 0], [0, 0, -0.7]], limits: {upper: 0.5}}}
 analysis: {type: dynamics, duration: 1 s, step: 1 ms}
 )",
-                          "leash.yaml");
+                              "leash.yaml");
     FAIL();
   } catch (const std::exception& e) {
     EXPECT_NE(std::string(e.what()).find("joints.leash.limits: the points are 0.7 m apart at the "

@@ -40,8 +40,8 @@ output: {hdf5: false}
 /// @tests{statics-relaxation}
 TEST(SlackCable, FindsTheShapeOfTheCatenary) {
   for (const auto& [n, s] : {std::pair(20, 1.5), {40, 1.5}, {40, 1.05}, {40, 3.0}, {100, 1.5}}) {
-    Simulation rope(read_model_text(kRope, "rope.yaml",
-                                    {format("variables.n={}", n), format("variables.s={}", s)}));
+    Simulation rope(io::read_model_text(
+        kRope, "rope.yaml", {format("variables.n={}", n), format("variables.s={}", s)}));
     const RunSummary r = rope.run();
     ASSERT_EQ(r.end, RunEnd::finished) << n << ' ' << s << ' ' << r.message;
     EXPECT_TRUE(r.statics->slack.empty());
@@ -61,7 +61,7 @@ TEST(SlackCable, FindsTheShapeOfTheCatenary) {
 }
 
 TEST(SlackCable, IsNamedInAWarning) {
-  Simulation s(read_model_text(R"(
+  Simulation s(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies:
@@ -75,7 +75,7 @@ cables:
 analysis: {type: statics}
 output: {hdf5: false}
 )",
-                               "lamp.yaml"));
+                                   "lamp.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   ASSERT_EQ(r.statics->slack.size(), 1u);
@@ -115,7 +115,7 @@ TEST(SnapThrough, IsReportedAtAnyNumberOfLoadSteps) {
   const double limit = mises_limit();
   for (const int steps : {1, 2, 10, 37})
     for (const double part : {1.05, 1.5, 4.0}) {
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           kMises, "truss.yaml",
           {format("variables.P={}", part * limit), format("variables.steps={}", steps)}));
       const RunSummary r = s.run();
@@ -133,7 +133,7 @@ TEST(SnapThrough, IsReportedAtAnyNumberOfLoadSteps) {
       EXPECT_EQ(r.statics->unstable, 0);
     }
   for (const int steps : {1, 10}) {
-    Simulation s(read_model_text(
+    Simulation s(io::read_model_text(
         kMises, "truss.yaml",
         {format("variables.P={}", 0.99 * limit), format("variables.steps={}", steps)}));
     const RunSummary r = s.run();
@@ -147,7 +147,7 @@ TEST(SnapThrough, IsReportedAtAnyNumberOfLoadSteps) {
 TEST(Truss, HasTheFrequencyOfItsTangent) {
   const double limit = mises_limit(), l_0 = std::hypot(1.0, 0.2);
   for (const double part : {0.5, 0.9, 0.99, 0.999}) {
-    const ModalAnalysis truss(read_model_text(
+    const ModalAnalysis truss(io::read_model_text(
         kMises, "truss.yaml", {format("variables.P={}", part * limit), "analysis.type=modes"}));
     ASSERT_TRUE(truss.converged()) << truss.message();
     const double z = truss.simulation().body(truss.model().body_index("top")).r.z();
@@ -167,11 +167,11 @@ output: {hdf5: false}
 )";
 
 TEST(SolidWithoutAFreeNode, RunsInStaticsAndModes) {
-  Simulation s(read_model_text(kHeldBlock, "cube.yaml"));
+  Simulation s(io::read_model_text(kHeldBlock, "cube.yaml"));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_EQ(r.statics->unstable, 0);
-  const ModalAnalysis modes(read_model_text(kHeldBlock, "cube.yaml", {"analysis.type=modes"}));
+  const ModalAnalysis modes(io::read_model_text(kHeldBlock, "cube.yaml", {"analysis.type=modes"}));
   ASSERT_TRUE(modes.converged()) << modes.message();
   EXPECT_TRUE(modes.report().modes.empty());
   EXPECT_THAT(modes.report().warnings.at(0), HasSubstr("every degree of freedom is constrained"));

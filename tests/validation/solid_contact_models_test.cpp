@@ -19,7 +19,7 @@ namespace polhode::test::solid_contact_models_tests {
 namespace {
 
 Model two_cubes(const std::string& law, const std::string& analysis) {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
@@ -33,16 +33,16 @@ solids:
     material: rubber
     velocity: [-0.5, 0, 0]
 contacts: {default: {)" + law +
-                             R"(}}
+                                 R"(}}
 analysis: )" + analysis,
-                         "cubes.yaml");
+                             "cubes.yaml");
 }
 
 /// Three by three elements below, four by four above, pressed by a dead load while the sides are
 /// held: numerical damping brings them to rest. The stress is uniform.
 TEST(SolidContactModel, PassesThePatchTestWithMeshesThatDoNotMatch) {
   const double p = 30.0;
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
 solids:
@@ -62,13 +62,13 @@ loads: {p: {type: pressure, solid: upper, surface: zmax, pressure: 30, follower:
 contacts: {default: {gap_tolerance: 1 mm}}
 analysis: {duration: 4 s, step: 0.05 s, rho_inf: 0}
 )",
-                                        "patch.yaml"));
+                                            "patch.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   double worst = 0.0;
   for (int s = 0; s < 2; ++s) {
     double area = 0.0;
-    for (const SurfacePointReport& point : simulation.surface_points(s)) {
+    for (const surface_contact::SurfacePointReport& point : simulation.surface_points(s)) {
       worst = std::max(worst, std::abs(point.pressure / p - 1.0));
       area += point.force.norm() / p;
     }
@@ -95,7 +95,7 @@ struct Blow {
 
 Blow blow_of_bars(double other_length, int cells, const std::string& step, int restitution) {
   Model model =
-      read_model_text(format(R"(
+      io::read_model_text(format(R"(
 format: 1
 materials: {{m: {{type: elastic, youngs_modulus: 10 kPa, poisson_ratio: 0, density: 100}}}}
 solids:
@@ -112,9 +112,9 @@ contacts: {{default: {{restitution: {4:d}, gap_tolerance: 5e-6}}}}
 analysis: {{duration: 0.25 s, step: {5}}}
 output: {{hdf5: false}}
 )",
-                             other_length, static_cast<int>(std::lround(other_length * cells)),
-                             0.5 * other_length + 2e-5, cells, restitution, step),
-                      "bars.yaml");
+                                 other_length, static_cast<int>(std::lround(other_length * cells)),
+                                 0.5 * other_length + 2e-5, cells, restitution, step),
+                          "bars.yaml");
   Simulation simulation(std::move(model));
   Blow blow;
   double first = -1.0, last = 0.0, before = 0.0;
@@ -193,11 +193,11 @@ TEST(SolidContactModel, ContinuesFromACheckpointInTheSameBits) {
   int touched = 0;
   const RunSummary summary = straight.run({}, [&](Simulation& s) {
     if (s.contact(0).points == 0 || ++touched != 3) return;
-    write_checkpoint(file, model, s.system(), s.state());
+    io::write_checkpoint(file, model, s.system(), s.state());
   });
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   ASSERT_GT(touched, 3);
-  Simulation continued(model, read_checkpoint(file, model, straight.system()));
+  Simulation continued(model, io::read_checkpoint(file, model, straight.system()));
   EXPECT_LT(continued.time(), straight.time());
   ASSERT_EQ(continued.run().end, RunEnd::finished);
   EXPECT_EQ(continued.state_hash(), straight.state_hash());
@@ -205,7 +205,7 @@ TEST(SolidContactModel, ContinuesFromACheckpointInTheSameBits) {
 
 /// A cube that would pass a sheet of rubber in two steps.
 TEST(SolidContactModel, NothingPassesThroughASheet) {
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 1 ms}}}
 solids:
@@ -220,7 +220,7 @@ solids:
 contacts: {default: {friction: 0.3}}
 analysis: {duration: 30 ms, step: 2 ms}
 )",
-                                        "shot.yaml"));
+                                            "shot.yaml"));
   const RunSummary summary = simulation.run({}, [](Simulation& s) {
     // The node of the sheet below the cube, on its upper face: the middle of 5 × 5.
     const Vec3 sheet = s.solid(0).position[25 + 12];
@@ -235,7 +235,7 @@ analysis: {duration: 30 ms, step: 2 ms}
 
 /// A ring so soft that it collapses under its own weight: its top falls on its bottom.
 Simulation ring(const std::string& contact, const std::string& contacts) {
-  return Simulation(read_model_text(R"(
+  return Simulation(io::read_model_text(R"(
 format: 1
 gravity: [0, -150, 0]
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 2 ms}}}
@@ -248,7 +248,7 @@ solids:
 contacts: )" + contacts + R"(
 analysis: {duration: 70 ms, step: 1 ms}
 )",
-                                    "ring.yaml"));
+                                        "ring.yaml"));
 }
 
 /// The inner node at the top over that at the bottom [m].
@@ -286,7 +286,7 @@ TEST(SolidContactModel, ARingThatCollapsesDoesNotPassThroughItself) {
 /// Two bars of one element, each standing on an edge, that cross in their middles, where neither
 /// has a node.
 Model crossing_edges(const std::string& law, const std::string& spin) {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
@@ -299,12 +299,12 @@ solids:
     material: rubber
     velocity: [0.05, 0.1, -0.5]
     angular_velocity: )" + spin +
-                             R"(
+                                 R"(
 contacts: {default: {)" + law +
-                             R"(}}
+                                 R"(}}
 analysis: {duration: 0.2 s, step: 0.5 ms}
 )",
-                         "edges.yaml");
+                             "edges.yaml");
 }
 
 /// The highest edge of the lower bar and the lowest one of the upper bar at the start.
@@ -361,10 +361,10 @@ TEST(SolidContactModel, CrossedEdgesDoNotPassBetweenTheirNodes) {
 
 TEST(SolidContactModel, NamesSolidsThatTouchAtTheStart) {
   const auto stacked = [](double z) {
-    return read_model_text(R"(
+    return io::read_model_text(R"(
 format: 1
 variables: {z: )" + std::to_string(z) +
-                               R"( m}
+                                   R"( m}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
   lower: {mesh: {block: {size: [0.1, 0.1, 0.1], cells: [1, 1, 1]}}, material: rubber}
@@ -372,7 +372,7 @@ solids:
 contacts: {}
 analysis: {duration: 1 ms, step: 1 ms}
 )",
-                           "stack.yaml");
+                               "stack.yaml");
   };
   const auto error_of = [&](double z) -> std::string {
     try {

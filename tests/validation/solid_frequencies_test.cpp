@@ -21,7 +21,7 @@ struct Bar {
 /// Adds a bar along x whose first layer of nodes belongs to a body, or is free.
 void add_bar(System& system, const Bar& bar, const Vec3& size, double first, double young,
              double density, int body) {
-  const Mesh mesh = make_mesh(
+  const solids::Mesh mesh = solids::make_mesh(
       "bar", "block",
       {{"size", {size[0], size[1], size[2]}}, {"cells", {bar.along, bar.across, bar.across}}},
       bar.cell);
@@ -36,16 +36,16 @@ void add_bar(System& system, const Bar& bar, const Vec3& size, double first, dou
     }
     system.add_node(node);
   }
-  SolidElementsDescription d;
+  solids::SolidElementsDescription d;
   d.name = "solids.bar";
   d.element = bar.element;
-  d.material = make_material(
+  d.material = solids::make_material(
       "materials.m",
       {.kind = "elastic", .values = {{"youngs_modulus", young}, {"poisson_ratio", 0.3}}});
   d.density = density;
   d.connectivity = mesh.blocks.at(0).nodes;
   d.X = X;
-  system.add_elements(make_solid_elements(std::move(d)));
+  system.add_elements(solids::make_solid_elements(std::move(d)));
 }
 
 struct FreeBar {

@@ -18,7 +18,7 @@ namespace {
 /// Three by three elements below, four by four above, which is held by the contact only.
 TEST(SolidsInStatics, PassThePatchTestWithMeshesThatDoNotMatch) {
   const double p = 30.0;
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
 solids:
@@ -38,12 +38,12 @@ loads: {p: {type: pressure, solid: upper, surface: zmax, pressure: 30, follower:
 contacts: {default: {gap_tolerance: 1 mm}}
 analysis: {type: statics}
 )",
-                                        "patch.yaml"));
+                                            "patch.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   for (int s = 0; s < 2; ++s) {
     double area = 0.0;
-    for (const SurfacePointReport& point : simulation.surface_points(s)) {
+    for (const surface_contact::SurfacePointReport& point : simulation.surface_points(s)) {
       EXPECT_NEAR(point.pressure / p, 1.0, 1e-10);
       area += point.force.norm() / p;
     }
@@ -59,7 +59,7 @@ analysis: {type: statics}
 /// of the load. @tests{statics-deflation} @tests{statics-rigid}
 TEST(SolidsInStatics, WithoutSupportsStretchWithoutDrift) {
   const auto run = [](bool held, const std::string& load) {
-    Simulation s(read_model_text(
+    Simulation s(io::read_model_text(
         R"(
 format: 1
 variables: {p: 10 kPa}
@@ -105,7 +105,7 @@ output: {hdf5: false}
 /// other, as near to one triangle as to its mirror image. Hertz: 4/3 E* √R* δ^(3/2) (K. L. Johnson,
 /// Contact Mechanics, 1985, section 4.2). @tests{statics-kink}
 TEST(SolidsInStatics, FindAnEquilibriumAtAKinkOfTheContact) {
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 variables: {T: 1 s}
 materials:
@@ -125,7 +125,7 @@ solids:
 contacts: {default: {gap_tolerance: 2e-5, reference_pressure: 20 kPa}}
 analysis: {type: statics, load_steps: 6}
 )",
-                                        "dent.yaml"));
+                                            "dent.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   const double modulus = 1.0 / (0.91 / 1e6 + 0.91 / 2e6), deep = 3.9e-3;
@@ -137,7 +137,7 @@ analysis: {type: statics, load_steps: 6}
 /// list.
 TEST(SolidsInStatics, FindNewContactPartnersAsTheyMove) {
   const auto pressed = [](double start, double way) {
-    Simulation simulation(read_model_text(format(R"(
+    Simulation simulation(io::read_model_text(format(R"(
 format: 1
 variables: {{T: 1 s, way: {} m}}
 materials: {{m: {{type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}}}
@@ -155,8 +155,8 @@ solids:
 contacts: {{default: {{gap_tolerance: 0.2 mm}}}}
 analysis: {{type: statics, load_steps: 8}}
 )",
-                                                 way, start),
-                                          "pushed.yaml"));
+                                                     way, start),
+                                              "pushed.yaml"));
     const RunSummary summary = simulation.run();
     EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
     return simulation.contact(0).normal_force;

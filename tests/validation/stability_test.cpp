@@ -15,8 +15,8 @@
 namespace polhode::stability_tests {
 namespace {
 
-StaticReport statics_of(const std::string& text, const Overrides& overrides) {
-  Simulation s(read_model_text(text, "beam.yaml", overrides));
+StaticReport statics_of(const std::string& text, const io::Overrides& overrides) {
+  Simulation s(io::read_model_text(text, "beam.yaml", overrides));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   return *r.statics;
@@ -58,7 +58,7 @@ TEST(Stability, OfTheRightAngleFrameIsLostAtItsLoadOnAnyMesh) {
 TEST(Stability, OfTheRightAngleFrameIsLostWhereItsLowestFrequencyIsZero) {
   for (const int n : {5, 10, 40, 200}) {  // above 33 elements a leg by Lanczos iterations
     const auto lowest = [&](double load) {
-      const ModalAnalysis frame(read_model_text(
+      const ModalAnalysis frame(io::read_model_text(
           kFrame, "frame.yaml",
           {"variables.n=" + std::to_string(n), "analysis.type=modes", "analysis.count=2",
            "loads.pull.force=[" + std::to_string(load) + ", 0, 0]"}));
@@ -118,7 +118,7 @@ TEST(Stability, OfACantileverColumnIsLostAtEulersLoad) {
 TEST(Stability, WiresHaveTheirFrequenciesAtAnySlenderness) {
   for (const auto& [d, n] :
        {std::pair("0.01", 20), {"1e-3", 40}, {"1e-4", 40}, {"1e-5", 40}, {"1e-5", 200}}) {
-    const ModalAnalysis wire(read_model_text(
+    const ModalAnalysis wire(io::read_model_text(
         kColumn, "wire.yaml",
         {std::string("variables.d=") + d, "variables.part=0", "analysis.load_steps=1",
          "variables.n=" + std::to_string(n), "analysis.type=modes", "analysis.count=4"}));
@@ -150,7 +150,7 @@ output: {hdf5: false}
 TEST(Stability, AnElasticaBendsByTheClosedFormAtAnyAxialStiffness) {
   for (const char* stiff : {"1e5", "1e7", "1e9"})
     for (const auto& [P, u, w] : {std::tuple("1", 0.05643, 0.30172), {"10", 0.55500, 0.81061}}) {
-      Simulation s(read_model_text(
+      Simulation s(io::read_model_text(
           kElastica, "beam.yaml",
           {std::string("variables.P=") + P, std::string("variables.stiff=") + stiff}));
       const RunSummary r = s.run();
@@ -172,7 +172,7 @@ analysis: {type: modes, count: 6, about: start}
 )";
 
 TEST(Stability, TheModesOfAStringBeginWithItsFundamental) {
-  const ModalAnalysis string(read_model_text(kString, "string.yaml"));
+  const ModalAnalysis string(io::read_model_text(kString, "string.yaml"));
   ASSERT_TRUE(string.converged()) << string.message();
   const std::vector<Mode>& modes = string.report().modes;
   ASSERT_EQ(modes.size(), 6u);

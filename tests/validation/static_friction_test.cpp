@@ -11,7 +11,7 @@ namespace {
 
 /// Speed of a body that is pulled with half its weight per second, at a time after the start [m/s].
 double speed_after(double t, const char* bodies, const char* law, const char* step) {
-  Simulation run(read_model_text(format(R"(
+  Simulation run(io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, -10]
 bodies:
@@ -21,8 +21,8 @@ loads: {{pull: {{type: force, body: a, force: ["5*t", 0, 0]}}}}
 contacts: {{default: {{law: {}, friction: 0.5, static_friction: 0.6}}}}
 analysis: {{type: dynamics, duration: {:.17g} s, step: {}}}
 )",
-                                        bodies, law, t, step),
-                                 "m.yaml"));
+                                            bodies, law, t, step),
+                                     "m.yaml"));
   EXPECT_EQ(run.run().end, RunEnd::finished);
   return run.body(1).v.x();
 }
@@ -51,7 +51,7 @@ TEST(StaticFriction, IsThatOfTheWholeContactPatch) {
 TEST(StaticFriction, HoldsABlockOnAnIncline) {
   for (const char* shape : {"box: [0.4, 0.4, 0.2]", "cylinder: [0.4, 0.2]"})
     for (const char* step : {"10 ms", "5 ms", "1 ms", "0.1 ms"}) {
-      Simulation run(read_model_text(format(R"(
+      Simulation run(io::read_model_text(format(R"(
 format: 1
 gravity: [0, 0, -9.81]
 variables: {{tilt: 30 deg, a: sin(tilt), b: cos(tilt)}}
@@ -61,8 +61,8 @@ bodies:
 contacts: {{default: {{friction: 0.5, static_friction: 0.6}}}}
 analysis: {{type: dynamics, duration: 0.3 s, step: {}}}
 )",
-                                            shape, step),
-                                     "m.yaml"));
+                                                shape, step),
+                                         "m.yaml"));
       const Vec3 start = run.body("block").r;
       EXPECT_EQ(run.run().end, RunEnd::finished);
       EXPECT_LT((run.body("block").r - start).norm(), 1e-5) << shape << ' ' << step;

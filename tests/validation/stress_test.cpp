@@ -18,13 +18,13 @@ namespace polhode::stress_tests {
 namespace {
 
 struct Solved {
-  Mesh mesh;
-  NodalFields nodal;
+  solids::Mesh mesh;
+  solids::NodalFields nodal;
   RunSummary summary;
 };
 
-Solved solve(const std::string& text, const Overrides& overrides) {
-  Simulation s(read_model_text(text, "solid.yaml", overrides));
+Solved solve(const std::string& text, const io::Overrides& overrides) {
+  Simulation s(io::read_model_text(text, "solid.yaml", overrides));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   const SolidMap& map = s.solids().at(0);
@@ -73,7 +73,8 @@ TEST(NodalStress, OfACantileverIsThatOfBendingForAnyNumberOfLayers) {
         const Mat3 sigma = stress_at(s, {0.0, side * 0.05, side * 0.05});
         EXPECT_NEAR(sigma(0, 0), -side * 3000.0, bounds[static_cast<std::size_t>(k)] * 3000.0)
             << element << ' ' << thick;
-        EXPECT_NEAR(von_mises(sigma), 3000.0, 1.5 * bounds[static_cast<std::size_t>(k)] * 3000.0)
+        EXPECT_NEAR(solids::von_mises(sigma), 3000.0,
+                    1.5 * bounds[static_cast<std::size_t>(k)] * 3000.0)
             << element << ' ' << thick;
       }
     }
@@ -162,9 +163,9 @@ TEST(StressError, ApproachesTheTrueOne) {
 std::string plate_with_a_hole(int n) {
   const int around = 2 * n, out = 4 * n;
   constexpr double kHalf = 20.0, kThick = 0.1;
-  Mesh mesh =
-      make_mesh("plate", "block",
-                {{"size", {1, 1, 1}}, {"cells", {double(out), double(around), 1}}}, "hex20");
+  solids::Mesh mesh = solids::make_mesh(
+      "plate", "block", {{"size", {1, 1, 1}}, {"cells", {double(out), double(around), 1}}},
+      "hex20");
   const double first = std::numbers::pi / (4.0 * n);
   double growth = 1.0;  // first (growth^out − 1)/(growth − 1) = kHalf − 1
   for (double low = 1.0, high = 10.0; high - low > 1e-12;) {
@@ -222,7 +223,7 @@ TEST(NodalStress, AtAHoleInAPlateIsThatOfKirsch) {
     RecordProperty(std::to_string(n), format("{:.4f} {:.4f}", across, along));
     EXPECT_NEAR(across, 3.01, n == 2 ? 0.15 : 0.05) << n;
     EXPECT_NEAR(along, -1.0, n == 2 ? 0.05 : 0.02) << n;
-    EXPECT_LT(von_mises(stress_at(s, {1.0, 0.0, 0.0})), 1.06e6) << n;
+    EXPECT_LT(solids::von_mises(stress_at(s, {1.0, 0.0, 0.0})), 1.06e6) << n;
     const double error = s.summary.solids.at(0).error;
     if (n > 2) {
       EXPECT_LT(error, 0.5 * before);

@@ -46,7 +46,7 @@ TEST(SurfaceContactModel, PassesThePatchTest) {
     if (k % 3 != 0) x[2] += 0.04 * std::sin(8.0 * i + 5.0 * j);
     return x;
   });
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 bodies: {floor: {fixed: true, shape: {plane: z}}}
 materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
@@ -61,12 +61,13 @@ loads: {p: {type: pressure, solid: block, surface: {plane: {axis: z, at: max}}, 
 contacts: {default: {gap_tolerance: 1 mm}}
 analysis: {type: statics}
 )",
-                                        "patch.yaml"));
+                                            "patch.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
-  const std::vector<SurfacePointReport> points = simulation.surface_points(0);
+  const std::vector<surface_contact::SurfacePointReport> points = simulation.surface_points(0);
   ASSERT_EQ(points.size(), 16U);
-  for (const SurfacePointReport& point : points) EXPECT_NEAR(point.pressure / p, 1.0, 1e-10);
+  for (const surface_contact::SurfacePointReport& point : points)
+    EXPECT_NEAR(point.pressure / p, 1.0, 1e-10);
   const ContactReport contact = simulation.contact(0);
   EXPECT_NEAR(contact.force[2] / (1.2 * p), 1.0, 1e-10);
   const SolidReport solid = simulation.solid(0);
@@ -79,7 +80,7 @@ analysis: {type: statics}
 
 /// A hammer with a head of rubber and a free ball, in space, which collide while both rotate.
 TEST(SurfaceContactModel, KeepsEnergyAndMomentaOfASolidThatIsBondedToABody) {
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 bodies:
   hammer: {shape: {box: [0.3, 0.1, 0.1]}, density: 1000, position: [-0.2, 0.01, 0], velocity: [1.5, 0, 0], angular_velocity: [0.5, 0.4, 3]}
@@ -95,7 +96,7 @@ contacts:
   exclude: [[hammer, ball]]
 analysis: {duration: 0.4 s, step: 0.5 ms}
 )",
-                                        "hammer.yaml"));
+                                            "hammer.yaml"));
   double touched = 0.0;
   const RunSummary summary = simulation.run({}, [&](Simulation& s) {
     if (s.contact(0).points > 0) touched += 5e-4;
@@ -113,7 +114,7 @@ analysis: {duration: 0.4 s, step: 0.5 ms}
 /// (St Venant's rod; Goldsmith, Impact, 1960, section 3.2).
 TEST(SurfaceContactModel, AnElasticBarRestsOnAWallWhileAWaveRunsThroughIt) {
   const double density = 100.0, c = 10.0, area = 0.1, v = 0.01, length = 1.0;
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 bodies: {wall: {fixed: true, shape: {plane: x}}}
 materials: {m: {type: elastic, youngs_modulus: 10 kPa, poisson_ratio: 0, density: 100}}
@@ -126,7 +127,7 @@ solids:
 contacts: {default: {restitution: 1, gap_tolerance: 5e-6}}
 analysis: {duration: 0.3 s, step: 1 ms}
 )",
-                                        "bar.yaml"));
+                                            "bar.yaml"));
   const double plateau = density * c * v * area;
   double first = 0.0, last = 0.0, sum = 0.0;
   int steps = 0;
@@ -161,7 +162,7 @@ TEST(SurfaceContactModel, CarriesTheEndOfABallByHertz) {
     const double cap = 1.0 - std::sqrt(1.0 - x * x - y * y);
     return Vec3(x, y, cap + (depth + 0.02 - cap) * z / depth);
   });
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 variables: {T: 1 s}
 bodies: {wall: {fixed: true, shape: {plane: z}}}
@@ -178,7 +179,7 @@ solids:
 contacts: {default: {law: linear, gap_tolerance: 1e-6, reference_pressure: 20 kPa}}
 analysis: {type: statics}
 )",
-                                        "hertz.yaml"));
+                                            "hertz.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   const double F = 4.0 * simulation.contact(0).normal_force;  // two planes of symmetry
@@ -187,7 +188,7 @@ analysis: {type: statics}
   EXPECT_LT(a, 0.011);
   EXPECT_GT(a, 0.009);
   double pressure = 0.0, farthest = 0.0;
-  for (const SurfacePointReport& point : simulation.surface_points(0)) {
+  for (const surface_contact::SurfacePointReport& point : simulation.surface_points(0)) {
     const double r = std::hypot(point.point[0], point.point[1]);
     farthest = std::max(farthest, r);
     if (r < 1e-6) pressure = point.pressure;
@@ -204,7 +205,7 @@ analysis: {type: statics}
 /// and of the mesh.
 TEST(SurfaceContactModel, CarriesAnOctantOfABallByHertz) {
   constexpr double kModulus = 1e6, kPoisson = 0.3;
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 variables: {T: 1 s}
 bodies: {wall: {fixed: true, shape: {plane: z}}}
@@ -221,7 +222,7 @@ solids:
 contacts: {default: {law: linear, gap_tolerance: 5e-7, reference_pressure: 20 kPa}}
 analysis: {type: statics}
 )",
-                                        "octant.yaml"));
+                                            "octant.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   const double F = 4.0 * simulation.contact(0).normal_force;  // two planes of symmetry
@@ -230,7 +231,7 @@ analysis: {type: statics}
   EXPECT_NEAR(a, 0.04, 1e-3);
   double pressure = 0.0, farthest = 0.0;
   int along = 0;
-  for (const SurfacePointReport& point : simulation.surface_points(0)) {
+  for (const surface_contact::SurfacePointReport& point : simulation.surface_points(0)) {
     const double r = std::hypot(point.point[0], point.point[1]);
     if (r < 1e-6) pressure = point.pressure;
     if (point.pressure <= 0.0) continue;
@@ -248,11 +249,11 @@ TEST(SurfaceContactModel, KeepsEnergyAndMomentaOnConesEllipsoidsAndHulls) {
        {"{cone: [0.12, 0.15]}", "{ellipsoid: [0.1, 0.14, 0.2]}",
         "{hull: {points: [[0.08, 0, 0], [-0.04, 0.07, 0], [-0.04, -0.07, 0], [0, 0, 0.1], "
         "[0.02, 0.01, -0.08]]}}"}) {
-    Simulation simulation(read_model_text(R"(
+    Simulation simulation(io::read_model_text(R"(
 format: 1
 bodies:
   stone: {density: 500, position: [0.16, 0.01, 0.02], velocity: [-1, 0, 0], angular_velocity: [2, 3, 1], shape: )" +
-                                              shape + R"(}
+                                                  shape + R"(}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
   cube:
@@ -262,7 +263,7 @@ solids:
 contacts: {default: {restitution: 1}}
 analysis: {duration: 0.15 s, step: 0.5 ms}
 )",
-                                          "stone.yaml"));
+                                              "stone.yaml"));
     const RunSummary summary = simulation.run();
     ASSERT_EQ(summary.end, RunEnd::finished) << shape << summary.message;
     EXPECT_GT(simulation.contact(0).impulse, 0.1) << shape;
@@ -276,10 +277,10 @@ analysis: {duration: 0.15 s, step: 0.5 ms}
 /// step.
 TEST(SurfaceContactModel, NothingPassesThroughAThinPlate) {
   for (const char* shape : {"{box: [1, 1, 0.005]}", "{cylinder: [1, 0.005]}"}) {
-    Simulation simulation(read_model_text(std::string(R"(
+    Simulation simulation(io::read_model_text(std::string(R"(
 format: 1
 bodies: {plate: {fixed: true, shape: )") + shape +
-                                              R"(}}
+                                                  R"(}}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 1 ms}}}
 solids:
   cube:
@@ -289,7 +290,7 @@ solids:
 contacts: {default: {friction: 0.3}}
 analysis: {duration: 40 ms, step: 5 ms}
 )",
-                                          "shot.yaml"));
+                                              "shot.yaml"));
     double energy = simulation.balance().kinetic, rise = 0.0;
     const RunSummary summary = simulation.run({}, [&](Simulation& s) {
       const Balance b = s.balance();

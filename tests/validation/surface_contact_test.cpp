@@ -24,7 +24,7 @@ namespace {
 struct Block {
   System system;
   State state;
-  Mesh mesh;
+  solids::Mesh mesh;
   std::vector<Vec3> X;
   int contact = -1;
   std::unique_ptr<Stepper> stepper;
@@ -33,8 +33,8 @@ struct Block {
   template <class Place>
   Block(const std::vector<double>& size, const std::vector<double>& cells,
         const std::vector<double>& grading, Place&& place) {
-    mesh = make_mesh("block", "block", {{"size", size}, {"cells", cells}, {"grading", grading}},
-                     "hex8");
+    mesh = solids::make_mesh("block", "block",
+                             {{"size", size}, {"cells", cells}, {"grading", grading}}, "hex8");
     for (const Vec3& own : mesh.nodes) {
       const NodeData node = place(own);
       X.push_back(node.position);
@@ -44,25 +44,25 @@ struct Block {
 
   void add_elements(const char* element, double modulus, double nu, double density,
                     const char* kind = "neo_hookean") {
-    MaterialDescription material;
+    solids::MaterialDescription material;
     material.kind = kind;
     material.values = {{"youngs_modulus", modulus}, {"poisson_ratio", nu}};
-    SolidElementsDescription d;
+    solids::SolidElementsDescription d;
     d.name = "solids.block";
     d.element = element;
-    d.material = make_material("materials.m", material);
+    d.material = solids::make_material("materials.m", material);
     d.density = density;
     d.connectivity = mesh.blocks.at(0).nodes;
     d.X = X;
-    system.add_elements(make_solid_elements(std::move(d)));
+    system.add_elements(solids::make_solid_elements(std::move(d)));
   }
 
   /// Faces of the boundary all of whose nodes satisfy the condition.
   template <class Condition>
-  [[nodiscard]] LoadedFaces faces(Condition&& on) const {
+  [[nodiscard]] solids::LoadedFaces faces(Condition&& on) const {
     static constexpr int kFace[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-    LoadedFaces list{"quad4", {}};
+    solids::LoadedFaces list{"quad4", {}};
     const std::vector<int>& nodes = mesh.blocks.at(0).nodes;
     std::map<std::vector<int>, int> count;  // of boundary faces: 1
     const auto of = [&](std::size_t e, const int(&face)[4]) {
@@ -86,13 +86,15 @@ struct Block {
     return list;
   }
 
-  void touch(const LoadedFaces& faces, const RigidSurface& surface, const SurfacePlace& place,
-             const SurfaceLaw& law) {
-    contact = system.add_elements(std::make_unique<SurfaceContact>(
-        "contacts.c", surface_points("contacts.c", faces, X), X, surface, place, law));
+  void touch(const solids::LoadedFaces& faces, const surface_contact::RigidSurface& surface,
+             const surface_contact::SurfacePlace& place, const surface_contact::SurfaceLaw& law) {
+    contact = system.add_elements(std::make_unique<surface_contact::SurfaceContact>(
+        "contacts.c", surface_contact::surface_points("contacts.c", faces, X), X, surface, place,
+        law));
   }
-  [[nodiscard]] SurfaceReport report() const {
-    const auto& group = dynamic_cast<const SurfaceContact&>(system.nodes().group(contact));
+  [[nodiscard]] surface_contact::SurfaceReport report() const {
+    const auto& group =
+        dynamic_cast<const surface_contact::SurfaceContact&>(system.nodes().group(contact));
     return group.report(state.element_history.data() + system.nodes().first_history(contact));
   }
 
@@ -118,8 +120,8 @@ struct Block {
   }
 };
 
-SurfaceLaw stiff(double tolerance, double k, double mu) {
-  SurfaceLaw law;
+surface_contact::SurfaceLaw stiff(double tolerance, double k, double mu) {
+  surface_contact::SurfaceLaw law;
   law.normal.tolerance = tolerance;
   law.normal.stiffness = k;
   law.mu = mu;
@@ -188,7 +190,7 @@ TEST(SurfaceContact, ABlockAndABallKeepEnergyAndMomenta) {
   still.v = Vec3(0.0, 0.05, 0.5);
   still.W = Vec3(0.5, -0.3, 1.0);
   const int body = b.system.add_body(ball, still);
-  SurfacePlace place;
+  surface_contact::SurfacePlace place;
   place.size = l;
   for (int k = 0; k < 4; ++k) {
     const Vec3 Z = k == 0 ? Vec3::Zero() : Vec3(l * Vec3::Unit(k - 1));
@@ -196,7 +198,8 @@ TEST(SurfaceContact, ABlockAndABallKeepEnergyAndMomenta) {
         b.system.add_node(NodeData{.position = Z, .body = body, .Z = Z});
     b.X.push_back(Z);
   }
-  const RigidSurface sphere{.kind = RigidSurface::Kind::sphere, .radius = 0.6};
+  const surface_contact::RigidSurface sphere{.kind = surface_contact::RigidSurface::Kind::sphere,
+                                             .radius = 0.6};
   b.touch(b.faces([](const Vec3& x) { return x[2] < -0.49; }), sphere, place,
           stiff(5e-3, 5e7, 0.3));
   b.start_run(step);
@@ -239,8 +242,9 @@ TEST(SurfaceContact, PassesThePatchTest) {
   });
   b.add_elements("hex8_standard", 2000.0, 0.3, 1.0, "st_venant_kirchhoff");
   b.touch(b.faces([](const Vec3& x) { return x[2] < -0.39; }), {}, {}, stiff(1e-3, 1e5, 0.0));
-  const LoadedFaces top[] = {b.faces([](const Vec3& x) { return x[2] > 0.39; })};
-  b.system.add_elements(make_dead_pressure("loads.p", top, b.X, std::make_shared<Pressure>(p)));
+  const solids::LoadedFaces top[] = {b.faces([](const Vec3& x) { return x[2] > 0.39; })};
+  b.system.add_elements(
+      solids::make_dead_pressure("loads.p", top, b.X, std::make_shared<Pressure>(p)));
   const auto zero = std::make_shared<Zero>();
   for (int i = 0; i < static_cast<int>(b.mesh.nodes.size()); ++i) {
     if (b.mesh.nodes[static_cast<std::size_t>(i)][0] < -0.49) b.system.prescribe(i, 0, zero);

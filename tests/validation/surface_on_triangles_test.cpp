@@ -28,11 +28,11 @@ std::string flat_field(int n, double spacing) {
 
 /// A cube of rubber and a body that spins freely, in space.
 Model collision(const std::string& shape, const std::string& law, const std::string& duration) {
-  return read_model_text(R"(
+  return io::read_model_text(R"(
 format: 1
 bodies:
   ring: {density: 500, position: [0.19, 0.01, 0.02], velocity: [-1, 0, 0], angular_velocity: [2, 3, 1], shape: )" +
-                             shape + R"(}
+                                 shape + R"(}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
   cube:
@@ -40,11 +40,11 @@ solids:
     material: rubber
     velocity: [0.5, 0, 0]
 contacts: {default: {)" + law +
-                             R"(}}
+                                 R"(}}
 analysis: {duration: )" + duration +
-                             R"(, step: 0.5 ms}
+                                 R"(, step: 0.5 ms}
 )",
-                         "collision.yaml");
+                             "collision.yaml");
 }
 
 TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
@@ -91,12 +91,12 @@ TEST(SurfaceOnTriangles, ContinuesFromACheckpointInTheSameBits) {
   int touched = 0;
   const RunSummary summary = straight.run({}, [&](Simulation& s) {
     if (s.contact(0).points == 0 || ++touched != 3) return;
-    write_checkpoint(file, model, s.system(), s.state());
+    io::write_checkpoint(file, model, s.system(), s.state());
   });
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   ASSERT_GT(touched, 3);
   EXPECT_LT(summary.linear_momentum_drift, 1e-12);
-  Simulation continued(model, read_checkpoint(file, model, straight.system()));
+  Simulation continued(model, io::read_checkpoint(file, model, straight.system()));
   EXPECT_LT(continued.time(), straight.time());
   ASSERT_EQ(continued.run().end, RunEnd::finished);
   EXPECT_EQ(continued.state_hash(), straight.state_hash());
@@ -105,19 +105,19 @@ TEST(SurfaceOnTriangles, ContinuesFromACheckpointInTheSameBits) {
 /// Positions of the nodes of a block after a run on a body.
 std::vector<Vec3> after_run(const std::string& body, const std::string& block,
                             const std::string& duration) {
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies: {base: {fixed: true, )" + body + R"(}}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 2 ms}}}
 solids:
   block: {material: rubber, )" + block +
-                                            R"(}
+                                                R"(}
 contacts: {default: {friction: 0.2, gap_tolerance: 0.5 mm, reference_pressure: 20 kPa}}
 analysis: {duration: )" + duration +
-                                            R"(, step: 2 ms}
+                                                R"(, step: 2 ms}
 )",
-                                        "slide.yaml"));
+                                            "slide.yaml"));
   const RunSummary summary = simulation.run();
   EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
   EXPECT_GT(simulation.contact(0).impulse, 0.1);
@@ -184,10 +184,10 @@ TEST(SurfaceOnTriangles, NothingPassesThroughThinWalls) {
   for (const std::string& shape : {mesh, flat_field(9, 0.125),
                                    std::string("{tube: [1.5, 1.49, 0.5], position: [0, 0, -0.75], "
                                                "orientation: {axis: x, angle: 90 deg}}")}) {
-    Simulation simulation(read_model_text(R"(
+    Simulation simulation(io::read_model_text(R"(
 format: 1
 bodies: {wall: {fixed: true, shape: )" + shape +
-                                              R"(}}
+                                                  R"(}}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 1 ms}}}
 solids:
   cube:
@@ -197,7 +197,7 @@ solids:
 contacts: {default: {friction: 0.3}}
 analysis: {duration: 40 ms, step: 5 ms}
 )",
-                                          "shot.yaml"));
+                                              "shot.yaml"));
     double energy = simulation.balance().kinetic, rise = 0.0;
     const RunSummary summary = simulation.run({}, [&](Simulation& s) {
       const Balance b = s.balance();
@@ -213,10 +213,10 @@ analysis: {duration: 40 ms, step: 5 ms}
 
 /// Uniform contact pressure at every node, also over corners and edges of the field.
 TEST(SurfaceOnTriangles, PassesThePatchTestOnAField) {
-  Simulation simulation(read_model_text(R"(
+  Simulation simulation(io::read_model_text(R"(
 format: 1
 bodies: {floor: {fixed: true, shape: )" + flat_field(9, 0.25) +
-                                            R"(}}
+                                                R"(}}
 materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
 solids:
   block:
@@ -229,12 +229,13 @@ loads: {p: {type: pressure, solid: block, surface: zmax, pressure: 30, follower:
 contacts: {default: {gap_tolerance: 1 mm}}
 analysis: {type: statics}
 )",
-                                        "patch.yaml"));
+                                            "patch.yaml"));
   const RunSummary summary = simulation.run();
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
-  const std::vector<SurfacePointReport> points = simulation.surface_points(0);
+  const std::vector<surface_contact::SurfacePointReport> points = simulation.surface_points(0);
   ASSERT_EQ(points.size(), 12U);
-  for (const SurfacePointReport& point : points) EXPECT_NEAR(point.pressure / 30.0, 1.0, 1e-10);
+  for (const surface_contact::SurfacePointReport& point : points)
+    EXPECT_NEAR(point.pressure / 30.0, 1.0, 1e-10);
   EXPECT_NEAR(simulation.contact(0).force[2], 30.0, 1e-8);
 }
 
@@ -243,17 +244,17 @@ TEST(SurfaceOnTriangles, RefusesSolidsThatStartWithinABody) {
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
   const auto error_of = [](const std::string& body, const std::string& law = "") -> std::string {
     try {
-      Simulation(read_model_text(R"(
+      Simulation(io::read_model_text(R"(
 format: 1
 bodies: {rock: {fixed: true, )" + body +
-                                     R"(}}
+                                         R"(}}
 materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
   pad: {mesh: {block: {size: [0.1, 0.1, 0.1], cells: [1, 1, 1]}}, material: rubber}
 contacts: {)" + law + R"(}
 analysis: {duration: 1 ms, step: 1 ms}
 )",
-                                 "start.yaml"))
+                                     "start.yaml"))
           .run();
     } catch (const std::exception& e) {
       return e.what();

@@ -51,13 +51,14 @@ TEST_P(RollingInATube, SwingsOnItsOwnRadius) {
   const double R = 0.5, rho = 0.1, A = 0.1, k = kind == Rolling::ball ? 0.4 : 0.5;
   Scene s;
   const BodyMotion start = at({(R - rho) * std::sin(A), 0.003, -(R - rho) * std::cos(A)});
-  const ShapePlace lies{Vec3::Zero(), along_y()};
-  const int body = kind == Rolling::ball
-                       ? s.add_ball("ball", rho, 1.0, start)
-                       : s.add("rod",
-                               kind == Rolling::capsule ? capsule("rod", 2.0 * rho, 0.4, lies)
-                                                        : cylinder("rod", 2.0 * rho, 0.4, lies),
-                               1.0, {0.02, 0.5 * rho * rho, 0.02}, start);
+  const geometry::ShapePlace lies{Vec3::Zero(), along_y()};
+  const int body =
+      kind == Rolling::ball
+          ? s.add_ball("ball", rho, 1.0, start)
+          : s.add("rod",
+                  kind == Rolling::capsule ? geometry::capsule("rod", 2.0 * rho, 0.4, lies)
+                                           : cylinder("rod", 2.0 * rho, 0.4, lies),
+                  1.0, {0.02, 0.5 * rho * rho, 0.02}, start);
   s.contacts->add_shape({kGround, "tube", round_tube(1.2, 2.0 * R, 1.0, lies)});
   s.law(0.5, 0.0);
   s.begin(dt);
@@ -103,10 +104,12 @@ struct OnAFloor {
     if (floor == Floor::plane)
       s.add_floor();
     else if (floor == Floor::box)
-      s.contacts->add_shape({kGround, "box", box("box", {8.0, 4.0, 0.4}, {{0.0, 0.0, -0.2}})});
+      s.contacts->add_shape(
+          {kGround, "box", geometry::box("box", {8.0, 4.0, 0.4}, {{0.0, 0.0, -0.2}})});
     else
       s.contacts->add_shape(
-          {kGround, "field", height_field("field", 9, 0.5, std::vector<double>(81, 0.0))});
+          {kGround, "field",
+           geometry::height_field("field", 9, 0.5, std::vector<double>(81, 0.0))});
   }
 };
 
@@ -173,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(Steps, TubeOnAFloor, testing::ValuesIn(floors_and_steps
 /// @param motion  Keys of the pipe but shape and mass. @param contact  Keys of contacts.default.
 Simulation pipe_and(const std::string& shape, double length, const std::string& motion,
                     const std::string& contact, double duration, double step) {
-  return Simulation(read_model_text(
+  return Simulation(io::read_model_text(
       format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
              "  other: {{fixed: true, shape: {}}}\n"
              "  pipe: {{shape: {{tube: [0.2, 0.18, {}]}}, mass: 1, inertia: [0.01, 0.01, "

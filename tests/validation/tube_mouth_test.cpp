@@ -22,7 +22,7 @@ constexpr double kMouth = 0.02, kRounding = 1e-5;
 /// @param body  Its keys but the mass. @param contact  Keys of contacts.default.
 Simulation on_mouth(const std::string& body, const std::string& contact, double duration,
                     double step) {
-  return Simulation(read_model_text(
+  return Simulation(io::read_model_text(
       format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
              "  tube: {{fixed: true, shape: {{tube: [0.06, 0.04, 0.06]}}, position: [0, 0, "
              "-0.03]}}\n"
@@ -131,7 +131,7 @@ TEST(TubeMouth, HoldsShaftsInASleeve) {
         for (const double tilt : {0.0, 2e-3}) {
           SCOPED_TRACE(format("{} by {} at {} s, tilted by {}", lying.body, law, step, tilt));
           if (tilt > 0.0 && lying.height == -2e-4) continue;  // it does not fit
-          Simulation s(read_model_text(
+          Simulation s(io::read_model_text(
               format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
                      "  sleeve: {{fixed: true, shape: {{tube: [0.06, 0.04, 0.06]}}, orientation: "
                      "{{axis: y, angle: 90 deg}}}}\n"

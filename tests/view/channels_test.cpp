@@ -38,14 +38,16 @@ analysis: {duration: 0.1 s, step: 10 ms}
 class ChannelsTest : public testing::Test {
  protected:
   void SetUp() override {
-    Simulation simulation(read_model_text(kModel, "model.yaml"));
-    Recorder recorder(simulation, folder_ / "r",
-                      {.model_file = "model.yaml", .model_text = kModel});
+    Simulation simulation(io::read_model_text(kModel, "model.yaml"));
+    io::Recorder recorder(simulation, folder_ / "r",
+                          {.model_file = "model.yaml", .model_text = kModel});
     simulation.run([&](Simulation& s) { recorder.frame(s); }, [](Simulation&) {});
     recorder.frame(simulation);
     recorder.close();
   }
-  [[nodiscard]] ResultsReader results() const { return ResultsReader(folder_ / "r/results.h5"); }
+  [[nodiscard]] io::ResultsReader results() const {
+    return io::ResultsReader(folder_ / "r/results.h5");
+  }
   [[nodiscard]] std::vector<std::string> names(const std::string& name) const {
     std::vector<std::string> list;
     for (const ChannelColumn& c : channel_columns(results(), name)) list.push_back(c.name);
@@ -76,7 +78,7 @@ TEST_F(ChannelsTest, ANameSelectsAComponentAChannelOrAGroup) {
 }
 
 TEST_F(ChannelsTest, TheLengthOfASpringIsThatBetweenItsEnds) {
-  const ResultsReader r = results();
+  const io::ResultsReader r = results();
   const auto length = channel_columns(r, "loads.spring.length")[0].values;
   const auto angle = channel_columns(r, "joints.hinge.coordinates")[0].values;
   for (std::size_t k = 0; k < length.size();
@@ -95,7 +97,7 @@ TEST_F(ChannelsTest, SuggestsTheNearestName) {
 }
 
 TEST_F(ChannelsTest, ATableReadsBackExactly) {
-  const ResultsReader r = results();
+  const io::ResultsReader r = results();
   std::istringstream table(channels_csv(r, {"energy.kinetic"}));
   std::string line;
   std::getline(table, line);
@@ -121,8 +123,8 @@ TEST_F(ChannelsTest, APictureHasACurveForEachColumn) {
 }
 
 TEST_F(ChannelsTest, AnAnimatedSceneContainsTheMotion) {
-  const ResultsReader r = results();
-  const Model model = read_model_text(kModel, "model.yaml");
+  const io::ResultsReader r = results();
+  const Model model = io::read_model_text(kModel, "model.yaml");
   const std::string glb = scene_glb(make_scene(r, &model));
   ASSERT_EQ(glb.substr(0, 4), "glTF");
   std::uint32_t total = 0, length = 0;

@@ -74,15 +74,15 @@ class SceneTest : public testing::Test {
   void SetUp() override {
     std::ofstream(folder_ / "part.obj") << kTetrahedron;
     std::ofstream(folder_ / "model.yaml") << kModel;
-    Simulation simulation(read_model(folder_ / "model.yaml"));
-    Recorder recorder(simulation, folder_ / "model.results",
-                      {.version = "1", .model_file = "model.yaml", .model_text = kModel});
+    Simulation simulation(io::read_model(folder_ / "model.yaml"));
+    io::Recorder recorder(simulation, folder_ / "model.results",
+                          {.version = "1", .model_file = "model.yaml", .model_text = kModel});
     simulation.run([&](Simulation& s) { recorder.frame(s); }, [](Simulation&) {});
     recorder.frame(simulation);
     recorder.close();
   }
   [[nodiscard]] SceneData scene(const SceneOptions& options = {}) const {
-    const ResultsReader results(folder_ / "model.results/results.h5");
+    const io::ResultsReader results(folder_ / "model.results/results.h5");
     const Model model = model_of_results(results, folder_ / "model.results");
     return make_scene(results, &model, options);
   }
@@ -135,7 +135,7 @@ TEST_F(SceneTest, ContainsEveryKindOfObject) {
 TEST_F(SceneTest, ContainsTheNumbersOfTheResults) {
   const SceneData data = scene();
   const json m = json::parse(data.manifest);
-  const ResultsReader results(folder_ / "model.results/results.h5");
+  const io::ResultsReader results(folder_ / "model.results/results.h5");
   for (const json& channel : m["channels"]) {
     const std::string path = channel["path"];
     if (path == "energy/drift") continue;
@@ -152,7 +152,7 @@ TEST_F(SceneTest, ContainsTheNumbersOfTheResults) {
 TEST_F(SceneTest, ContainsFieldsOnTheOuterFacesOfSolids) {
   const SceneData data = scene();
   const json m = json::parse(data.manifest), solid = m["solids"][0];
-  const ResultsReader results(folder_ / "model.results/results.h5");
+  const io::ResultsReader results(folder_ / "model.results/results.h5");
   // All eight elements of the cube own triangles, in some order.
   EXPECT_EQ(solid["owners"]["n"], solid["triangles"]["n"]);
   std::map<std::string, std::size_t> found;
@@ -204,7 +204,7 @@ TEST_F(SceneTest, EscapesTextOfTheModelInThePage) {
 }
 
 TEST_F(SceneTest, ShowsBodiesWithoutTheModelFile) {
-  const ResultsReader results(folder_ / "model.results/results.h5");
+  const io::ResultsReader results(folder_ / "model.results/results.h5");
   const json m = json::parse(make_scene(results, nullptr).manifest);
   EXPECT_EQ(m["bodies"][2]["parts"].size(), 1U);
   EXPECT_THAT(m["notes"][0].get<std::string>(), HasSubstr("cannot be read"));

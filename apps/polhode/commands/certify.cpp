@@ -31,7 +31,7 @@ int certify_file(CertifyOptions& options) {
       keep ? options.folder
            : std::filesystem::path(options.model.file).replace_extension(".certificate").string();
   // With -o the results of the finest run are stored as by `run`.
-  std::optional<Recorder> recorder;
+  std::optional<io::Recorder> recorder;
   if (keep) {
     request.begin = [&](Simulation& s) {
       recorder.emplace(s, options.folder, provenance_of(options.model, s.summary()));

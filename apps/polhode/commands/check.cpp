@@ -140,7 +140,7 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
 /// Contact of a surface of a solid, or of a cable, with a shape or another surface.
 struct TouchingGroup {
   std::string name;
-  const SurfaceLaw& law;
+  const surface_contact::SurfaceLaw& law;
   std::size_t places;
   bool edges;
 };
@@ -148,7 +148,7 @@ struct TouchingGroup {
 TouchingGroup touching_group(const Simulation& simulation, const ContactMap::Surface& s) {
   const ElementGroup& group = simulation.system().nodes().group(s.group);
   return {group.name(), s.touching->law(), s.touching->places(),
-          group.kind() == EdgeContact::kKind};
+          group.kind() == surface_contact::EdgeContact::kKind};
 }
 
 /// Contacts of surfaces of solids and cables, and their laws.

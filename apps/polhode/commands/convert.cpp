@@ -26,16 +26,16 @@ struct ConvertOptions {
 };
 
 void write_table(const ConvertOptions& options, const std::string& ending) {
-  const ResultsReader results(results_path(options.film.results));
+  const io::ResultsReader results(results_path(options.film.results));
   if (ending == ".csv")
-    write_file_atomically(options.film.output, channels_csv(results, options.channels), false);
+    io::write_file_atomically(options.film.output, channels_csv(results, options.channels), false);
   else
     write_parquet(results, options.channels, options.film.output);
 }
 
 void write_grids(const ConvertOptions& options) {
   const std::string path = results_path(options.film.results);
-  const ResultsReader results(path);
+  const io::ResultsReader results(path);
   std::optional<Model> model;
   try {
     model = model_of_results(results, std::filesystem::absolute(path).parent_path().string());
@@ -63,7 +63,7 @@ int convert(ConvertOptions& options) {
   } else if (ending == ".glb") {
     ViewRequest request;
     request.input.file = options.film.results;
-    write_file_atomically(options.film.output, scene_glb(scene_of(request)), false);
+    io::write_file_atomically(options.film.output, scene_glb(scene_of(request)), false);
   } else if (ending == ".gif" || ending == ".mp4" || ending.empty()) {
     if (!read_size(options.size, options.film)) {
       say(format("polhode convert: --size is '{}'. Write it as 640x400.", options.size));

@@ -71,7 +71,7 @@ Finding writing() {
     model.analysis.duration = 0.01;
     model.output.paraview = true;
     Simulation simulation(std::move(model));
-    Recorder recorder(simulation, folder, {});
+    io::Recorder recorder(simulation, folder, {});
     simulation.run([&](Simulation& s) { recorder.frame(s); });
     recorder.close();
   } catch (const std::exception& error) {

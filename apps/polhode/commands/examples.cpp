@@ -37,18 +37,18 @@ std::string title_of(const std::string& text) {
 /// Whether an example is generated; a generator takes precedence over a folder of its name, which
 /// contains one of its sizes.
 bool is_generated(const std::string& name) {
-  const auto& generators = model_generators();
+  const auto& generators = io::model_generators();
   return std::any_of(generators.begin(), generators.end(),
-                     [&](const ModelGenerator& g) { return g.name == name; });
+                     [&](const io::ModelGenerator& g) { return g.name == name; });
 }
 
 std::string listing() {
   std::vector<std::vector<std::string>> examples, generators;
   for (const ExampleText& example : example_texts())
     if (!is_generated(example.name)) examples.push_back({example.name, title_of(example.text)});
-  for (const ModelGenerator& generator : model_generators()) {
+  for (const io::ModelGenerator& generator : io::model_generators()) {
     std::string values;
-    for (const GeneratorParameter& p : generator.parameters)
+    for (const io::GeneratorParameter& p : generator.parameters)
       values += format(" --set {}={}", p.name, p.standard);
     generators.push_back({generator.name + values, generator.meaning});
   }
@@ -72,8 +72,9 @@ std::map<std::string, std::string> values_of(const std::vector<std::string>& set
 
 std::string text_of(const ExamplesOptions& options) {
   std::vector<std::string> names;
-  for (const ModelGenerator& generator : model_generators()) {
-    if (generator.name == options.name) return generate_model(generator, values_of(options.sets));
+  for (const io::ModelGenerator& generator : io::model_generators()) {
+    if (generator.name == options.name)
+      return io::generate_model(generator, values_of(options.sets));
     names.push_back(generator.name);
   }
   for (const ExampleText& example : example_texts()) {
@@ -107,7 +108,7 @@ Action add_examples(CLI::App& command) {
       if (options->output.empty())
         print(text);
       else
-        write_file_atomically(options->output, text);
+        io::write_file_atomically(options->output, text);
       return kOk;
     } catch (const InputError& error) {  // Wrong arguments, not a wrong model.
       say(error.what());

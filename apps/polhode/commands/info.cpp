@@ -57,7 +57,7 @@ std::vector<KindLine> kind_lines(const std::string& kinds) {
       lines.push_back(std::move(line));
     }
   if (kinds == "loads")
-    for (const SolidLoadKind& kind : solid_load_kinds()) {
+    for (const solids::SolidLoadKind& kind : solids::solid_load_kinds()) {
       KindLine line{kind.name, kind.meaning, "", {}};
       for (const auto& function : {kind.value, kind.vector})
         if (function) line.takes.push_back(function->name);
@@ -65,24 +65,24 @@ std::vector<KindLine> kind_lines(const std::string& kinds) {
       lines.push_back(std::move(line));
     }
   if (kinds == "materials")
-    for (const MaterialKind& kind : material_kinds()) {
+    for (const solids::MaterialKind& kind : solids::material_kinds()) {
       KindLine line{kind.name, kind.meaning, kind.uncoupled ? "uncoupled" : "", {}};
       for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
       lines.push_back(std::move(line));
     }
   if (kinds == "elements")
-    for (const ElementKind& kind : element_kinds())
+    for (const solids::ElementKind& kind : solids::element_kinds())
       lines.push_back({kind.name, kind.meaning, "cells: " + kind.shape, {}});
   if (kinds == "meshes")
-    for (const MeshGenerator& kind : mesh_generators()) {
+    for (const solids::MeshGenerator& kind : solids::mesh_generators()) {
       KindLine line{kind.name, kind.meaning, "sides: " + kind.sides, {}};
-      for (const MeshParameter& p : kind.parameters) line.takes.push_back(p.name);
+      for (const solids::MeshParameter& p : kind.parameters) line.takes.push_back(p.name);
       lines.push_back(std::move(line));
     }
   if (kinds == "shapes")
-    for (const ShapeKind& kind : shape_kinds()) {
+    for (const geometry::ShapeKind& kind : geometry::shape_kinds()) {
       KindLine line{kind.name, kind.meaning, "", {}};
-      for (const ShapeSize& size : kind.sizes) line.takes.push_back(size.name);
+      for (const geometry::ShapeSize& size : kind.sizes) line.takes.push_back(size.name);
       lines.push_back(std::move(line));
     }
   return lines;

@@ -105,12 +105,12 @@ int run_modes(Model model, const ModelArguments& arguments, std::string folder, 
   const ModalAnalysis analysis(std::move(model));
   const int code = analysis.converged() ? kOk : kNotConverged;
   if (analysis.converged())
-    write_modes(analysis, folder,
-                {.version = POLHODE_VERSION,
-                 .solver = "mumps",
-                 .model_file = std::filesystem::path(arguments.file).filename().string(),
-                 .model_text = read_file(arguments.file),
-                 .overrides = arguments.overrides});
+    io::write_modes(analysis, folder,
+                    {.version = POLHODE_VERSION,
+                     .solver = "mumps",
+                     .model_file = std::filesystem::path(arguments.file).filename().string(),
+                     .model_text = io::read_file(arguments.file),
+                     .overrides = arguments.overrides});
   else
     say(analysis.message());
   for (const std::string& warning : analysis.report().warnings) say("warning: " + warning);

@@ -19,7 +19,7 @@ struct PlotOptions {
   std::vector<std::string> channels;
 };
 
-std::string time_label(const ResultsReader& results, const std::string& path) {
+std::string time_label(const io::ResultsReader& results, const std::string& path) {
   try {
     const auto folder = std::filesystem::absolute(path).parent_path().string();
     if (model_of_results(results, folder).analysis.type == "statics") return "load factor [-]";
@@ -41,14 +41,14 @@ Action add_plot(CLI::App& command) {
       ->type_name("FILE");
   return [options] {
     const std::string path = results_path(options->results);
-    const ResultsReader results(path);
+    const io::ResultsReader results(path);
     if (options->channels.empty()) {
       for (const std::string& name : channel_names(results)) print(name + "\n");
       return static_cast<int>(kOk);
     }
     const std::string file = options->output.empty() ? "plot.svg" : options->output;
-    write_file_atomically(file, channels_svg(results, options->channels, time_label(results, path)),
-                          false);
+    io::write_file_atomically(
+        file, channels_svg(results, options->channels, time_label(results, path)), false);
     say(format("{}: {} frames.", file, results.frames()));
     return static_cast<int>(kOk);
   };

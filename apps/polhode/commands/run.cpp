@@ -43,7 +43,7 @@ std::string results_folder(const RunOptions& options) {
 
 Simulation make_simulation(const RunOptions& options, Model model) {
   if (options.restart.empty()) return Simulation(std::move(model));
-  State state = read_checkpoint(options.restart, model, build_system(model));
+  State state = io::read_checkpoint(options.restart, model, build_system(model));
   return {std::move(model), std::move(state)};
 }
 
@@ -100,12 +100,12 @@ int run(const RunOptions& options) {
   Simulation simulation = make_simulation(options, std::move(model));
   const std::string folder = results_folder(options);
   const std::string checkpoint = folder + "/" + kCheckpointName;
-  Recorder recorder(simulation, folder, provenance_of(options.model, simulation.summary()),
-                    !options.restart.empty());
+  io::Recorder recorder(simulation, folder, provenance_of(options.model, simulation.summary()),
+                        !options.restart.empty());
   if (!options.quiet) narrate_start(simulation, folder);
 
   const auto save = [&] {
-    write_checkpoint(checkpoint, simulation.model(), simulation.system(), simulation.state());
+    io::write_checkpoint(checkpoint, simulation.model(), simulation.system(), simulation.state());
   };
   catch_stop_signals();
   bool limit_reached = false;

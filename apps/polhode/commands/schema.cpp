@@ -20,11 +20,11 @@ Action add_schema(CLI::App& command) {
       ->type_name("FILE");
   command.footer("An editor that knows JSON Schema completes and checks model files with it.");
   return [options] {
-    const std::string text = options->markdown ? reference_markdown() : json_schema();
+    const std::string text = options->markdown ? io::reference_markdown() : io::json_schema();
     if (options->output.empty())
       print(text);
     else
-      write_file_atomically(options->output, text);
+      io::write_file_atomically(options->output, text);
     return kOk;
   };
 }

@@ -11,11 +11,13 @@
 
 namespace polhode {
 
-class SolidContact;
-class SurfaceContactInterface;
 namespace contact {
 class ContactSet;
 }
+namespace surface_contact {
+class SolidContact;
+class SurfaceContactInterface;
+}  // namespace surface_contact
 
 /// Result of building the contacts of a Model.
 struct ContactMap {
@@ -35,9 +37,10 @@ struct ContactMap {
     Side side;              ///< Opposite one.
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
-    const SurfaceContactInterface* touching = nullptr;  ///< That group; owned by the System.
+    const surface_contact::SurfaceContactInterface* touching =
+        nullptr;  ///< That group; owned by the System.
     /// That group if it is a contact with the mesh of a solid, else null.
-    const SolidContact* on_mesh = nullptr;
+    const surface_contact::SolidContact* on_mesh = nullptr;
   };
   std::vector<Surface> surfaces;
 };

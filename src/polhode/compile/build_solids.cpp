@@ -53,21 +53,21 @@ class SolidBuilder {
   void make_elements() {
     const MaterialSpec& spec =
         model_.materials[static_cast<std::size_t>(model_.material_index(solid_.material))];
-    const std::shared_ptr<const Material> material =
-        make_material(format("materials.{}", spec.name), material_description(spec));
+    const std::shared_ptr<const solids::Material> material =
+        solids::make_material(format("materials.{}", spec.name), material_description(spec));
     const std::vector<Vec3> X = positions(map_.plan, map_.first_node);
     for (std::size_t b = 0; b < map_.plan.mesh.blocks.size(); ++b) {
-      SolidElementsDescription d{.name = format("solids.{}", solid_.name),
-                                 .element = map_.plan.elements[b],
-                                 .material = material,
-                                 .density = map_.plan.density,
-                                 .conserving = solid_.stress == "conserving",
-                                 .connectivity = map_.plan.mesh.blocks[b].nodes,
-                                 .X = X,
-                                 .isa = model_.analysis.isa};
+      solids::SolidElementsDescription d{.name = format("solids.{}", solid_.name),
+                                         .element = map_.plan.elements[b],
+                                         .material = material,
+                                         .density = map_.plan.density,
+                                         .conserving = solid_.stress == "conserving",
+                                         .connectivity = map_.plan.mesh.blocks[b].nodes,
+                                         .X = X,
+                                         .isa = model_.analysis.isa};
       for (int& node : d.connectivity) node += map_.first_node;
       if (spec.fibre) d.fibres = {solid_.mesh.orientation.normalized() * spec.fibre->direction};
-      groups_.push_back(make_solid_elements(std::move(d)));
+      groups_.push_back(solids::make_solid_elements(std::move(d)));
       for (const std::string& warning : groups_.back()->warnings())
         map_.plan.warnings.push_back(warning);
     }
@@ -144,7 +144,7 @@ class SolidBuilder {
   const SolidSpec& solid_;
   const std::vector<int>& body_;
   SolidMap map_;
-  std::vector<std::unique_ptr<SolidElements>> groups_;
+  std::vector<std::unique_ptr<solids::SolidElements>> groups_;
 };
 
 }  // namespace
@@ -153,9 +153,9 @@ SolidMap add_solid(System& system, const Model& model, int solid, const std::vec
   return SolidBuilder(system, model, solid, body).build();
 }
 
-std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces) {
-  std::vector<LoadedFaces> list;
-  for (const FaceBlock& block : faces.blocks) {
+std::vector<solids::LoadedFaces> system_faces(const SolidMap& solid, const solids::Surface& faces) {
+  std::vector<solids::LoadedFaces> list;
+  for (const solids::FaceBlock& block : faces.blocks) {
     list.push_back({block.type, block.nodes});
     for (int& node : list.back().nodes) node += solid.first_node;
   }
@@ -164,33 +164,34 @@ std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& face
 
 std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid) {
   const std::string where = format("loads.{}", load.name);
-  const SolidLoadKind& kind = solid_load_kind(where + ".type", load.type);
+  const solids::SolidLoadKind& kind = solids::solid_load_kind(where + ".type", load.type);
   const auto require = [&](const std::optional<TimeParameter>& key, bool given) {
     if (key && !given)
       throw InputError(where, format("'{}' is missing", key->name), "Give its value");
   };
   require(kind.value, load.value != nullptr);
   require(kind.vector, load.vector.has_value());
-  const Mesh& mesh = solid.plan.mesh;
-  SolidLoadDescription d{.name = where,
-                         .value = load.value,
-                         .vector = load.vector.value_or(TimeVector{}),
-                         .values = load.parameters,
-                         .X = positions(solid.plan, solid.first_node),
-                         .density = solid.plan.density};
+  const solids::Mesh& mesh = solid.plan.mesh;
+  solids::SolidLoadDescription d{.name = where,
+                                 .value = load.value,
+                                 .vector = load.vector.value_or(TimeVector{}),
+                                 .values = load.parameters,
+                                 .X = positions(solid.plan, solid.first_node),
+                                 .density = solid.plan.density};
   for (const Parameter& p : kind.parameters)
     if (p.standard) d.values.try_emplace(p.name, *p.standard);
   if (load.follower)
-    d.follower = load.keeps == "work" ? FollowerRule::kWork : FollowerRule::kMomentum;
+    d.follower =
+        load.keeps == "work" ? solids::FollowerRule::kWork : solids::FollowerRule::kMomentum;
   switch (kind.place) {
-    case SolidLoadPlace::faces:
-      d.faces = system_faces(solid, select_faces(where + ".surface", mesh, load.selection));
+    case solids::SolidLoadPlace::faces:
+      d.faces = system_faces(solid, solids::select_faces(where + ".surface", mesh, load.selection));
       break;
-    case SolidLoadPlace::nodes:
-      d.nodes = select_nodes(where + ".nodes", mesh, load.selection);
+    case solids::SolidLoadPlace::nodes:
+      d.nodes = solids::select_nodes(where + ".nodes", mesh, load.selection);
       for (int& node : d.nodes) node += solid.first_node;
       break;
-    case SolidLoadPlace::elements:
+    case solids::SolidLoadPlace::elements:
       for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
         d.elements.push_back({solid.plan.elements[b], mesh.blocks[b].nodes});
         for (int& node : d.elements.back().nodes) node += solid.first_node;

@@ -10,16 +10,18 @@
 
 namespace polhode {
 
+namespace solids {
 class SolidElements;
+}
 
 /// A deformable solid in a System.
 struct SolidMap {
   SolidPlan plan;
-  int first_node = 0;                          ///< Its node k is the System's first_node + k.
-  std::vector<int> groups;                     ///< Of elements, by block of the mesh.
-  std::vector<const SolidElements*> elements;  ///< Of these groups; owned by the System.
-  double mass = 0.0;                           ///< [kg]
-  Vec3 centre = Vec3::Zero();                  ///< Of mass at the start, world [m].
+  int first_node = 0;       ///< Its node k is the System's first_node + k.
+  std::vector<int> groups;  ///< Of elements, by block of the mesh.
+  std::vector<const solids::SolidElements*> elements;  ///< Of these groups; owned by the System.
+  double mass = 0.0;                                   ///< [kg]
+  Vec3 centre = Vec3::Zero();                          ///< Of mass at the start, world [m].
 
   [[nodiscard]] int node_count() const { return static_cast<int>(plan.start.size()); }
 };
@@ -31,7 +33,8 @@ struct SolidMap {
                                  const std::vector<int>& body);
 
 /// Faces of a solid by the System's node numbers.
-[[nodiscard]] std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces);
+[[nodiscard]] std::vector<solids::LoadedFaces> system_faces(const SolidMap& solid,
+                                                            const solids::Surface& faces);
 
 /// Adds a load on a solid, a LoadSpec whose `solid` is set.
 /// @returns the groups of elements that apply it, one for each shape of face.

@@ -57,8 +57,9 @@ contact::NormalPotential potential_between_surfaces(const std::string& word) {
 double modulus(const Model& model, const SolidSpec& solid) {
   const MaterialSpec& spec =
       model.materials[static_cast<std::size_t>(model.material_index(solid.material))];
-  const LinearModuli m =
-      make_material(format("materials.{}", spec.name), material_description(spec))->linear();
+  const solids::LinearModuli m =
+      solids::make_material(format("materials.{}", spec.name), material_description(spec))
+          ->linear();
   return m.shear * (3.0 * m.lame + 2.0 * m.shear) / (m.lame + m.shear);
 }
 
@@ -91,7 +92,8 @@ class SurfacesBuilder {
   void add_elements(const SurfacePair& pair, std::unique_ptr<Elements> elements) {
     ContactMap::Surface surface{pair.own, pair.side, !pair.side.is_body() ? 0 : pair.shape};
     surface.touching = elements.get();
-    if constexpr (std::same_as<Elements, SolidContact>) surface.on_mesh = elements.get();
+    if constexpr (std::same_as<Elements, surface_contact::SolidContact>)
+      surface.on_mesh = elements.get();
     surface.group = system_.add_elements(std::move(elements));
     map_.surfaces.push_back(surface);
   }
@@ -102,26 +104,26 @@ class SurfacesBuilder {
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side.index)];
     const ShapeSpec& shape = body.shapes[pair.shape];
     const int carrier = bodies_[static_cast<std::size_t>(pair.side.index)];
-    const std::vector<LoadedFaces> faces = faces_of(solid);
+    const std::vector<solids::LoadedFaces> faces = faces_of(solid);
     // Nodes bonded to a body are not in contact with its shapes.
     std::vector<int> left_out;
     for (int k = 0; k < solid.node_count(); ++k)
       if (system_.nodes()[solid.first_node + k].body == carrier)
         left_out.push_back(solid.first_node + k);
-    const SurfacePlace place = place_of(body, shape, carrier);
+    const surface_contact::SurfacePlace place = place_of(body, shape, carrier);
     const std::vector<Vec3> X = positions();
-    for (const LoadedFaces& block : faces) {
+    for (const solids::LoadedFaces& block : faces) {
       const std::string where = name_of(pair);
-      const double edge = median_edge(block, X);
-      const SurfaceLaw law = law_of(pair.law, material_of({own}), edge,
-                                    std::min(edge, smallest_detail(shape)), Band::below);
-      SurfacePoints points;
+      const double edge = surface_contact::median_edge(block, X);
+      const surface_contact::SurfaceLaw law = law_of(
+          pair.law, material_of({own}), edge, std::min(edge, smallest_detail(shape)), Band::below);
+      surface_contact::SurfacePoints points;
       try {
-        points = surface_points(where, block, X, left_out);
+        points = surface_contact::surface_points(where, block, X, left_out);
       } catch (const InputError&) {
         continue;  // all of it is bonded to the body
       }
-      add_elements(pair, std::make_unique<SurfaceContact>(
+      add_elements(pair, std::make_unique<surface_contact::SurfaceContact>(
                              where, std::move(points), X,
                              rigid_surface(where, shape, law.normal.tolerance), place, law));
     }
@@ -148,18 +150,20 @@ class SurfacesBuilder {
     const CableSide a{cable_of(pair.own), line_of(pair.own)},
         b{cable_of(pair.side), line_of(pair.side)};
     const double radius = std::min(a.line.radius, b.line.radius);
-    const SurfaceLaw law = law_of(pair.law, lesser(material_of(a.cable), material_of(b.cable)),
-                                  2.0 * radius, radius, Band::about);
+    const surface_contact::SurfaceLaw law =
+        law_of(pair.law, lesser(material_of(a.cable), material_of(b.cable)), 2.0 * radius, radius,
+               Band::about);
     const std::vector<Vec3> X = positions();
     const std::vector<int> carriers = this->carriers();
     std::vector<int> nodes = a.line.nodes;
     nodes.insert(nodes.end(), b.line.nodes.begin(), b.line.nodes.end());
-    const SolidContactStart start{.X = X,
-                                  .carriers = carriers,
-                                  .edge = std::min(mean_piece(a.line), mean_piece(b.line)),
-                                  .way = way_of_step(nodes),
-                                  .self = pair.own == pair.side};
-    add_elements(pair, std::make_unique<EdgeContact>(
+    const surface_contact::SolidContactStart start{
+        .X = X,
+        .carriers = carriers,
+        .edge = std::min(mean_piece(a.line), mean_piece(b.line)),
+        .way = way_of_step(nodes),
+        .self = pair.own == pair.side};
+    add_elements(pair, std::make_unique<surface_contact::EdgeContact>(
                            format("{} on {}", a.cable.name, start.self ? "itself" : b.cable.name),
                            cable_sides(model_, a, b, X, law.normal.tolerance), law, start));
   }
@@ -171,17 +175,17 @@ class SurfacesBuilder {
     const ShapeSpec& shape = body.shapes[pair.shape];
     const CableLine& line = line_of(pair.own);
     const CableSizes sizes = cable_sizes(shape, line.radius);
-    const SurfaceLaw law =
+    const surface_contact::SurfaceLaw law =
         law_of(pair.law, material_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
     const std::string where = name_of(pair);
-    const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
+    const surface_contact::RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
     points.points.through = sizes.through;
-    const SurfacePlace place =
+    const surface_contact::SurfacePlace place =
         place_of(body, shape, bodies_[static_cast<std::size_t>(pair.side.index)]);
     const std::vector<Vec3> X = positions();
     const std::vector<double> gaps =
-        SurfaceContact(where, points.points, X, surface, place, law).gaps(X);
+        surface_contact::SurfaceContact(where, points.points, X, surface, place, law).gaps(X);
     leave_out_attachments(
         points, cable, line,
         [&](const AttachmentSpec& a) { return is_fastened_to(model_, a, pair.side.index); },
@@ -189,8 +193,8 @@ class SurfacesBuilder {
           return gaps[static_cast<std::size_t>(point)] < -0.5 * law.normal.tolerance;
         });
     if (points.arc.empty()) return;
-    add_elements(pair, std::make_unique<SurfaceContact>(where, std::move(points.points), X, surface,
-                                                        place, law));
+    add_elements(pair, std::make_unique<surface_contact::SurfaceContact>(
+                           where, std::move(points.points), X, surface, place, law));
   }
 
   /// Adds the centre line of a cable against the triangles of a solid.
@@ -200,26 +204,27 @@ class SurfacesBuilder {
     const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
     const CableLine& line = line_of(pair.own);
     const std::vector<Vec3> X = positions();
-    const std::vector<LoadedFaces> faces = faces_of(solids_[static_cast<std::size_t>(s)]);
-    const MeshSurface surface = triangulated(faces);
+    const std::vector<solids::LoadedFaces> faces = faces_of(solids_[static_cast<std::size_t>(s)]);
+    const surface_contact::MeshSurface surface = surface_contact::triangulated(faces);
     if (surface.triangles.empty()) return;
-    const SurfaceLaw law =
+    const surface_contact::SurfaceLaw law =
         law_of(pair.law, lesser(material_of({s}), material_of(cable)), 2.0 * line.radius,
                kOnSolid / kTolerance * line.radius, Band::about);
     const std::vector<int> carriers = this->carriers();
     std::vector<int> moving = nodes_of({s});
     moving.insert(moving.end(), line.nodes.begin(), line.nodes.end());
-    const SolidContactStart start{
+    const surface_contact::SolidContactStart start{
         .X = X, .carriers = carriers, .edge = smallest_edge(faces, X), .way = way_of_step(moving)};
     const std::string where = format("{} on {}", cable.name, solid.name);
     const auto contact = [&](const CablePoints& points) {
-      return std::make_unique<SolidContact>(where, mesh_points(points.points), surface, law, start,
-                                            round_line(points.points));
+      return std::make_unique<surface_contact::SolidContact>(
+          where, mesh_points(points.points), surface, law, start, round_line(points.points));
     };
     CablePoints points = cable_points(line, 0.5 * line.radius);
     const std::vector<double> gaps = contact(points)->gaps_at_start();
-    const std::vector<MeshPoint> places = mesh_points(points.points);
-    const SolidInside inside(solid_boundary(solids_[static_cast<std::size_t>(s)]), X[0].data());
+    const std::vector<surface_contact::MeshPoint> places = mesh_points(points.points);
+    const surface_contact::SolidInside inside(solid_boundary(solids_[static_cast<std::size_t>(s)]),
+                                              X[0].data());
     leave_out_attachments(
         points, cable, line,
         [&](const AttachmentSpec& a) {
@@ -244,10 +249,11 @@ class SurfacesBuilder {
     return list;
   }
 
-  [[nodiscard]] static double smallest_edge(const std::vector<LoadedFaces>& faces,
+  [[nodiscard]] static double smallest_edge(const std::vector<solids::LoadedFaces>& faces,
                                             const std::vector<Vec3>& X) {
     double edge = std::numeric_limits<double>::infinity();
-    for (const LoadedFaces& block : faces) edge = std::min(edge, median_edge(block, X));
+    for (const solids::LoadedFaces& block : faces)
+      edge = std::min(edge, surface_contact::median_edge(block, X));
     return edge;
   }
 
@@ -259,7 +265,7 @@ class SurfacesBuilder {
     return 0.5 * (radius + (round ? 0.5 * shape.sizes[0] : 0.0));
   }
 
-  [[nodiscard]] static std::vector<LoadedFaces> faces_of(const SolidMap& solid) {
+  [[nodiscard]] static std::vector<solids::LoadedFaces> faces_of(const SolidMap& solid) {
     return system_faces(solid, solid.plan.touching);
   }
 
@@ -269,33 +275,35 @@ class SurfacesBuilder {
     const bool self = partner == own;
     const std::vector<Vec3> X = positions();
     const int solids[2] = {own, partner};
-    std::vector<LoadedFaces> faces[2];
-    MeshSurface surfaces[2];
+    std::vector<solids::LoadedFaces> faces[2];
+    surface_contact::MeshSurface surfaces[2];
     double edge[2];
     for (int k = 0; k < 2; ++k) {
       faces[k] = faces_of(solids_[static_cast<std::size_t>(solids[k])]);
-      surfaces[k] = triangulated(faces[k]);
+      surfaces[k] = surface_contact::triangulated(faces[k]);
       edge[k] = smallest_edge(faces[k], X);
     }
     if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
     const double least = std::min(edge[0], edge[1]);
-    SurfaceLaw law =
+    surface_contact::SurfaceLaw law =
         law_of(pair.law, material_of({solids[0], solids[1]}), least, least, Band::about);
     const std::vector<int> carriers = this->carriers();
     const auto& name = [&](int side) -> const std::string& {
       return model_.solids[static_cast<std::size_t>(solids[side])].name;
     };
-    const SolidContactStart start{.X = X,
-                                  .carriers = carriers,
-                                  .edge = least,
-                                  .way = way_of_step(nodes_of({solids[0], solids[1]})),
-                                  .self = self};
+    const surface_contact::SolidContactStart start{
+        .X = X,
+        .carriers = carriers,
+        .edge = least,
+        .way = way_of_step(nodes_of({solids[0], solids[1]})),
+        .self = self};
     const auto contact = [&](int k) {
       const std::string where = format("{} on {}", name(k), name(1 - k));
-      std::vector<MeshPoint> points =
-          contact_points(where, faces[k], X, self ? nullptr : &surfaces[1 - k]);
-      for (MeshPoint& p : points) p.area *= 0.5;
-      return std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start);
+      std::vector<surface_contact::MeshPoint> points =
+          surface_contact::contact_points(where, faces[k], X, self ? nullptr : &surfaces[1 - k]);
+      for (surface_contact::MeshPoint& p : points) p.area *= 0.5;
+      return std::make_unique<surface_contact::SolidContact>(where, std::move(points),
+                                                             surfaces[1 - k], law, start);
     };
     for (int k = 0; k < (self ? 1 : 2); ++k) {
       SurfacePair sides = pair;
@@ -307,14 +315,16 @@ class SurfacesBuilder {
   }
 
   /// Adds the sharp edges of both surfaces against each other.
-  void add_edges(const SurfacePair& pair, const MeshSurface (&surfaces)[2],
-                 const std::vector<Vec3>& X, SurfaceLaw law, const SolidContactStart& start) {
-    EdgeContact::Sides sides{sharp_edges(surfaces[0], X), sharp_edges(surfaces[1], X),
-                             start.edge * start.edge};
+  void add_edges(const SurfacePair& pair, const surface_contact::MeshSurface (&surfaces)[2],
+                 const std::vector<Vec3>& X, surface_contact::SurfaceLaw law,
+                 const surface_contact::SolidContactStart& start) {
+    surface_contact::EdgeContact::Sides sides{surface_contact::sharp_edges(surfaces[0], X),
+                                              surface_contact::sharp_edges(surfaces[1], X),
+                                              start.edge * start.edge};
     if (sides.first.edges.empty() || sides.second.edges.empty()) return;
     law.normal.tolerance *= kEdgeBand;
     law.normal.stiffness /= kEdgeBand;
-    add_elements(pair, std::make_unique<EdgeContact>(
+    add_elements(pair, std::make_unique<surface_contact::EdgeContact>(
                            format("edges of {} on {}", model_.side_name(pair.own),
                                   start.self ? "itself" : model_.side_name(pair.side)),
                            std::move(sides), law, start));
@@ -340,9 +350,10 @@ class SurfacesBuilder {
   }
 
   /// Placement on the ground, or carried by four nodes bonded to the body.
-  SurfacePlace place_of(const BodySpec& body, const ShapeSpec& shape, int carrier) {
-    const contact::ShapePlace own = shape_place(body, shape);
-    SurfacePlace place;
+  surface_contact::SurfacePlace place_of(const BodySpec& body, const ShapeSpec& shape,
+                                         int carrier) {
+    const geometry::ShapePlace own = shape_place(body, shape);
+    surface_contact::SurfacePlace place;
     place.origin = own.origin;
     place.axes = own.axes;
     if (carrier == kGround) return place;
@@ -398,9 +409,10 @@ class SurfacesBuilder {
 
   /// @param edge  Of the mesh, or the diameter of a cable [m].
   /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
-  [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const SurfaceMaterial& material,
-                                  double edge, double smallest, Band place) const {
-    SurfaceLaw law;
+  [[nodiscard]] surface_contact::SurfaceLaw law_of(const ContactLawSpec& spec,
+                                                   const SurfaceMaterial& material, double edge,
+                                                   double smallest, Band place) const {
+    surface_contact::SurfaceLaw law;
     law.normal.potential = potential_between_surfaces(spec.potential);
     law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
     const bool barrier = !law.normal.is_spring();

@@ -51,7 +51,7 @@ CablePoints cable_points(const CableLine& line, double spacing) {
   all.points.radius = line.radius;
   all.points.most_apart = kMaxStretch * spacing;
   const auto add = [&](std::size_t piece, double part, double span, double length) {
-    SurfacePoints::Point p;
+    surface_contact::SurfacePoints::Point p;
     p.area = 2.0 * line.radius * length;
     p.N[0] = 1.0 - part;
     p.N[1] = part;
@@ -73,18 +73,18 @@ CablePoints cable_points(const CableLine& line, double spacing) {
   return all;
 }
 
-std::vector<MeshPoint> mesh_points(const SurfacePoints& points) {
-  std::vector<MeshPoint> list;
+std::vector<surface_contact::MeshPoint> mesh_points(const surface_contact::SurfacePoints& points) {
+  std::vector<surface_contact::MeshPoint> list;
   for (std::size_t k = 0; k < points.points.size(); ++k) {
-    MeshPoint& p = list.emplace_back();
+    surface_contact::MeshPoint& p = list.emplace_back();
     for (std::size_t a = 0; a < 2; ++a) p.add(points.nodes[2 * k + a], points.points[k].N[a]);
     p.area = points.points[k].area;
   }
   return list;
 }
 
-RoundLine round_line(const SurfacePoints& points) {
-  RoundLine line;
+surface_contact::RoundLine round_line(const surface_contact::SurfacePoints& points) {
+  surface_contact::RoundLine line;
   line.radius = points.radius;
   line.most_apart = points.most_apart;
   for (std::size_t k = 0; k < points.points.size(); ++k)
@@ -124,7 +124,7 @@ void leave_out_attachments(CablePoints& points, const CableLineSpec& cable, cons
     walk(at, 1);
     walk(at - 1, -1);
   }
-  SurfacePoints& all = points.points;
+  surface_contact::SurfacePoints& all = points.points;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.arc.size(); ++i) {
     if (out[i]) continue;

@@ -27,16 +27,17 @@ struct CableLine {
 
 /// Contact points of a cable, and their arc lengths.
 struct CablePoints {
-  SurfacePoints points;     ///< Each with its part of the length times the diameter.
-  std::vector<double> arc;  ///< Ascending [m].
+  surface_contact::SurfacePoints points;  ///< Each with its part of the length times the diameter.
+  std::vector<double> arc;                ///< Ascending [m].
 };
 /// Contact points: nodes, and points between them at distances of at most `spacing`, half of the
 /// distance they maintain from the core of the shape.
 [[nodiscard]] CablePoints cable_points(const CableLine& line, double spacing);
 
 /// Contact points as points of a mesh with a round section.
-[[nodiscard]] std::vector<MeshPoint> mesh_points(const SurfacePoints& points);
-[[nodiscard]] RoundLine round_line(const SurfacePoints& points);
+[[nodiscard]] std::vector<surface_contact::MeshPoint> mesh_points(
+    const surface_contact::SurfacePoints& points);
+[[nodiscard]] surface_contact::RoundLine round_line(const surface_contact::SurfacePoints& points);
 
 /// Removes contact points near attachments to a body: from each attachment, points nearer along the
 /// cable than half a turn about a bar of its own radius, and points that leave the body from the

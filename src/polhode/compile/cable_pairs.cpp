@@ -34,8 +34,8 @@ class Sides {
         radius_(std::min(a.line.radius, b.line.radius)),
         least_(a.line.radius + b.line.radius - kOverlap * tolerance) {}
 
-  EdgeContact::Sides take() {
-    EdgeContact::Sides sides;
+  surface_contact::EdgeContact::Sides take() {
+    surface_contact::EdgeContact::Sides sides;
     sides.first = edges(a_.line);
     sides.second = edges(b_.line);
     sides.area = 4.0 * radius_ * radius_;
@@ -57,10 +57,10 @@ class Sides {
 
   /// Edges of a cable with points at such distances that segments sag between them by a tolerance
   /// at the smallest crossing angle.
-  [[nodiscard]] EdgeLines edges(const CableLine& line) const {
+  [[nodiscard]] surface_contact::EdgeLines edges(const CableLine& line) const {
     const double both = a_.line.radius + b_.line.radius;
     const double spacing = 2.0 * std::sqrt(2.0 * both * tolerance_) / kAlong;
-    EdgeLines lines;
+    surface_contact::EdgeLines lines;
     for (const int node : line.nodes) {
       lines.vertices.emplace_back();
       lines.vertices.back().add(node, 1.0);
@@ -83,7 +83,7 @@ class Sides {
       const int node = line.nodes[static_cast<std::size_t>((k < 2 ? e : f) + k % 2)];
       x[k] = X_[static_cast<std::size_t>(node)];
     }
-    return nearest_of_edges(x).distance < least_;
+    return surface_contact::nearest_of_edges(x).distance < least_;
   }
 
   void leave_out_bends() {
@@ -156,8 +156,9 @@ class Sides {
 
 }  // namespace
 
-EdgeContact::Sides cable_sides(const Model& model, const CableSide& a, const CableSide& b,
-                               const std::vector<Vec3>& X, double tolerance) {
+surface_contact::EdgeContact::Sides cable_sides(const Model& model, const CableSide& a,
+                                                const CableSide& b, const std::vector<Vec3>& X,
+                                                double tolerance) {
   return Sides(model, a, b, X, tolerance).take();
 }
 

@@ -20,9 +20,11 @@ struct CableSide {
 /// these overlap at the start.
 /// @param X  Positions at the start by the system's node numbers [m].
 /// @param tolerance  Of the gap between crossing edges [m].
-[[nodiscard]] EdgeContact::Sides cable_sides(const Model& model, const CableSide& a,
-                                             const CableSide& b, const std::vector<Vec3>& X,
-                                             double tolerance);
+[[nodiscard]] surface_contact::EdgeContact::Sides cable_sides(const Model& model,
+                                                              const CableSide& a,
+                                                              const CableSide& b,
+                                                              const std::vector<Vec3>& X,
+                                                              double tolerance);
 
 /// Mean unstressed length of the segments [m].
 [[nodiscard]] double mean_piece(const CableLine& line);

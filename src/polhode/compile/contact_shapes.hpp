@@ -15,8 +15,8 @@ inline constexpr int kTubeSegments = 48;
 /// @param place  Of the shape, see shape_place().
 /// @param rounding  Of edges and corners of boxes, cones, hulls and triangles [m]; 0: the default.
 /// @throws InputError if the shape is rejected.
-[[nodiscard]] contact::Shape contact_shape(const std::string& where,
-                                           const contact::ShapePlace& place, const ShapeSpec& shape,
-                                           double rounding = 0.0);
+[[nodiscard]] geometry::Shape contact_shape(const std::string& where,
+                                            const geometry::ShapePlace& place,
+                                            const ShapeSpec& shape, double rounding = 0.0);
 
 }  // namespace polhode

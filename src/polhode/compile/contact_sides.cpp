@@ -74,9 +74,9 @@ std::string shape_path(const BodySpec& body, std::size_t shape) {
   return body.shapes.size() > 1 ? format("{}.{}", path, shape) : path;
 }
 
-contact::ShapePlace shape_place(const BodySpec& body, const ShapeSpec& shape) {
-  contact::ShapePlace place{shape.position - body.com,
-                            shape.orientation.normalized().toRotationMatrix()};
+geometry::ShapePlace shape_place(const BodySpec& body, const ShapeSpec& shape) {
+  geometry::ShapePlace place{shape.position - body.com,
+                             shape.orientation.normalized().toRotationMatrix()};
   if (shape.type == "plane") {
     const Vec3 n(shape.sizes[0], shape.sizes[1], shape.sizes[2]);
     place.axes = place.axes * rotation_between(Vec3::UnitZ(), n).toRotationMatrix();

@@ -26,7 +26,7 @@ struct ContactSide {
 [[nodiscard]] std::string shape_path(const BodySpec& body, std::size_t shape);
 /// Placement of a shape in contact coordinates: from the centre of mass in body axes, or in the
 /// world for fixed bodies. The normal of a plane is its z.
-[[nodiscard]] contact::ShapePlace shape_place(const BodySpec& body, const ShapeSpec& shape);
+[[nodiscard]] geometry::ShapePlace shape_place(const BodySpec& body, const ShapeSpec& shape);
 /// Settings of a shape; its keys override those of its body.
 [[nodiscard]] ContactSide contact_side(const BodySpec& body, std::size_t shape);
 [[nodiscard]] ContactSide contact_side(const SolidSpec& solid);

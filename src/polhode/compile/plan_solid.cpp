@@ -53,24 +53,25 @@ class SolidPlanner {
     fault(InputError(key.empty() ? where_ : where_ + "." + key, what, hint));
   }
 
-  Mesh mesh() {
+  solids::Mesh mesh() {
     const MeshSpec& spec = solid_.mesh;
     const std::string where = where_ + ".mesh";
     if (spec.type == "file") return from_file(where);
-    if (spec.type == "inline") return inline_mesh(where, spec.nodes, spec.elements, spec.sets);
-    return make_mesh(where + "." + spec.type, spec.type, spec.parameters,
-                     cell_of_element(solid_.element));
+    if (spec.type == "inline")
+      return solids::inline_mesh(where, spec.nodes, spec.elements, spec.sets);
+    return solids::make_mesh(where + "." + spec.type, spec.type, spec.parameters,
+                             cell_of_element(solid_.element));
   }
 
-  Mesh from_file(const std::string& where) {
-    Mesh mesh;
+  solids::Mesh from_file(const std::string& where) {
+    solids::Mesh mesh;
     try {
-      mesh = read_mesh(solid_.mesh.file, solid_.mesh.scale);
+      mesh = solids::read_mesh(solid_.mesh.file, solid_.mesh.scale);
     } catch (const InputError& e) {
       throw InputError(where + ".file", e.where() + ": " + e.what_is_wrong(), e.hint());
     }
     try {
-      mesh = part_of(mesh, solid_.mesh.group);
+      mesh = solids::part_of(mesh, solid_.mesh.group);
     } catch (const InputError& e) {
       throw InputError(where + ".group", e.what_is_wrong(), e.hint());
     }
@@ -79,13 +80,13 @@ class SolidPlanner {
 
   /// Whether there are solid cells, all valid and of the required kind.
   bool check_cells() {
-    const Mesh& mesh = plan_.mesh;
+    const solids::Mesh& mesh = plan_.mesh;
     bool sound = true;
     if (mesh.element_count() == 0) {
       fault("mesh", "the mesh has no solid elements", "Mesh a volume, not only its surface");
       return false;
     }
-    for (const ElementBlock& block : mesh.blocks) {
+    for (const solids::ElementBlock& block : mesh.blocks) {
       if (block.shape().dimension != 3) {
         fault("mesh", format("{} is no solid element", block.type),
               "Use hexahedra, tetrahedra or wedges");
@@ -100,8 +101,8 @@ class SolidPlanner {
         sound = false;
       }
     }
-    for (const MeshFault& one : mesh_faults(mesh)) {
-      const bool loose = one.kind == MeshFault::Kind::kLooseNodes;
+    for (const solids::MeshFault& one : solids::mesh_faults(mesh)) {
+      const bool loose = one.kind == solids::MeshFault::Kind::kLooseNodes;
       if (one.fatal || loose) {
         fault(solid_.mesh.type == "file" ? "mesh.file" : "mesh", one.what,
               loose ? "Leave it out, or name it in an element" : one.hint);
@@ -126,11 +127,11 @@ class SolidPlanner {
     if (!(plan_.density > 0.0))
       fault(solid_.density ? "density" : "", format("the density is {:g} kg/m^3", plan_.density),
             "Give the material or the solid a density above zero");
-    for (const ElementBlock& block : plan_.mesh.blocks) {
+    for (const solids::ElementBlock& block : plan_.mesh.blocks) {
       try {
-        const bool uncoupled = material_kind(material->type).uncoupled;
+        const bool uncoupled = solids::material_kind(material->type).uncoupled;
         plan_.elements.push_back(
-            choose_element(where_, solid_.element, block.type, uncoupled).name);
+            solids::choose_element(where_, solid_.element, block.type, uncoupled).name);
       } catch (const InputError& e) {
         fault("element", e.what_is_wrong(), e.hint());
         return;
@@ -146,7 +147,7 @@ class SolidPlanner {
 
   /// Whether there is a single layer of cells: every node lies on the boundary.
   [[nodiscard]] bool one_layer() const {
-    return boundary(plan_.mesh).nodes().size() == plan_.mesh.nodes.size();
+    return solids::boundary(plan_.mesh).nodes().size() == plan_.mesh.nodes.size();
   }
 
   void select_nodes_held() {
@@ -224,11 +225,13 @@ class SolidPlanner {
     return text + format(" and {} other{} are", nodes.size() - 1, nodes.size() == 2 ? "" : "s");
   }
 
-  std::vector<int> select(const std::string& key, const std::vector<Selection>& selections) {
+  std::vector<int> select(const std::string& key,
+                          const std::vector<solids::Selection>& selections) {
     std::vector<int> nodes;
     for (std::size_t k = 0; k < selections.size(); ++k) {
       try {
-        const std::vector<int> one = select_nodes(where_ + "." + key, plan_.mesh, {selections[k]});
+        const std::vector<int> one =
+            solids::select_nodes(where_ + "." + key, plan_.mesh, {selections[k]});
         nodes.insert(nodes.end(), one.begin(), one.end());
       } catch (const InputError& e) {
         const std::string at = selections.size() > 1 ? format("{}.{}", key, k) : key;
@@ -244,22 +247,22 @@ class SolidPlanner {
     if (!model_.contacts.present || !solid_.contact.touches.value_or(true)) return;
     try {
       plan_.touching =
-          select_faces(where_ + ".contact.surface", plan_.mesh, solid_.contact_surface);
+          solids::select_faces(where_ + ".contact.surface", plan_.mesh, solid_.contact_surface);
     } catch (const InputError& e) {
       fault(e);
     }
   }
 
   void measure() {
-    const Mesh& mesh = plan_.mesh;
+    const solids::Mesh& mesh = plan_.mesh;
     plan_.least_jacobian = std::numeric_limits<double>::infinity();
     std::vector<Vec3> X;
     for (int e = 0; e < mesh.element_count(); ++e) {
-      plan_.volume += element_volume(mesh, e);
+      plan_.volume += solids::element_volume(mesh, e);
       X.clear();
       for (const int node : mesh.element_nodes(e))
         X.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
-      const double least = least_jacobian(mesh.element_shape(e), X.data());
+      const double least = solids::least_jacobian(mesh.element_shape(e), X.data());
       if (least >= plan_.least_jacobian) continue;
       plan_.least_jacobian = least;
       plan_.least_element = e;

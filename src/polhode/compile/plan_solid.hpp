@@ -13,14 +13,14 @@ namespace polhode {
 /// A deformable solid with its mesh, sets and elements resolved, for build_system() and 'polhode
 /// check'.
 struct SolidPlan {
-  Mesh mesh;                                 ///< In its own coordinates [m].
+  solids::Mesh mesh;                         ///< In its own coordinates [m].
   std::vector<Vec3> start;                   ///< Its nodes in the world [m].
   std::vector<std::string> elements;         ///< Kind of element of each block of the mesh.
   double density = 0.0;                      ///< [kg/m³]
   std::vector<std::vector<int>> bonded;      ///< Nodes by SolidSpec::bonded, ascending.
   std::vector<std::vector<int>> prescribed;  ///< Nodes by SolidSpec::prescribed, ascending.
-  Surface touching;     ///< Contact faces, if the model has contacts and the solid takes part.
-  double volume = 0.0;  ///< [m³]
+  solids::Surface touching;  ///< Contact faces, if the model has contacts and the solid takes part.
+  double volume = 0.0;       ///< [m³]
   double least_jacobian = 0.0;  ///< Smallest det ∂X/∂ξ at a node or middle of an element [m³].
   int least_element = 0;        ///< Its element.
   std::vector<std::string> warnings;  ///< Conspicuous findings.

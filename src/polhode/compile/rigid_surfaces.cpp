@@ -35,7 +35,7 @@ bool is_other_convex(const ShapeSpec& shape) {
   return shape.type == "hull" || contact::find_round_solid(shape.type);
 }
 
-TriangleSurface triangles_of(const ShapeSpec& shape) {
+geometry::TriangleSurface triangles_of(const ShapeSpec& shape) {
   return shape_surface(shape.type, shape, kTubeSegments);
 }
 
@@ -53,7 +53,7 @@ double half_size(const ShapeSpec& shape) {
 
 double smallest_detail(const ShapeSpec& shape) {
   if (shape.type == "height_field") return shape.spacing;
-  return has_triangles(shape) ? contact::median_edge(triangles_of(shape)) : half_size(shape);
+  return has_triangles(shape) ? geometry::median_edge(triangles_of(shape)) : half_size(shape);
 }
 
 double widest_tolerance(const ShapeSpec& shape, double radius) {
@@ -69,42 +69,43 @@ CableSizes cable_sizes(const ShapeSpec& shape, double radius) {
   return {std::min(radius, half), 0.5 * (radius + half)};
 }
 
-RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance) {
-  RigidSurface s;
+surface_contact::RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape,
+                                            double tolerance) {
+  surface_contact::RigidSurface s;
   const std::vector<double>& size = shape.sizes;
   const auto rounding = [&](double length, double most) {
     return std::clamp(tolerance, kRounding * length, most * length);
   };
   if (shape.type == "sphere") {
-    s.kind = RigidSurface::Kind::sphere;
+    s.kind = surface_contact::RigidSurface::Kind::sphere;
     s.radius = 0.5 * size[0];
   } else if (shape.type == "capsule") {
-    s.kind = RigidSurface::Kind::capsule;
+    s.kind = surface_contact::RigidSurface::Kind::capsule;
     s.radius = 0.5 * size[0];
     s.half[2] = 0.5 * std::max(0.0, size[1] - size[0]);
   } else if (shape.type == "cylinder") {
-    s.kind = RigidSurface::Kind::cylinder;
+    s.kind = surface_contact::RigidSurface::Kind::cylinder;
     s.radius = 0.5 * size[0];
     s.half = Vec3(s.radius, s.radius, 0.5 * size[1]);
     s.rounding = rounding(s.half.minCoeff(), kMaxOfBoxes);
   } else if (shape.type == "box") {
-    s.kind = RigidSurface::Kind::box;
+    s.kind = surface_contact::RigidSurface::Kind::box;
     s.half = 0.5 * Vec3(size[0], size[1], size[2]);
     s.rounding = rounding(s.half.minCoeff(), kMaxOfBoxes);
   } else if (shape.type == "tube") {
-    s.kind = RigidSurface::Kind::tube;
+    s.kind = surface_contact::RigidSurface::Kind::tube;
     s.radius = 0.5 * size[0];
     s.half = Vec3(s.radius, 0.5 * size[1], 0.5 * size[2]);
     s.rounding = rounding(0.5 * std::min(s.radius - s.half[1], size[2]), kMaxOfBoxes);
   } else if (has_triangles(shape)) {
-    s.kind = RigidSurface::Kind::mesh;
-    s.triangles = std::make_shared<RigidMesh>(
+    s.kind = surface_contact::RigidSurface::Kind::mesh;
+    s.triangles = std::make_shared<surface_contact::RigidMesh>(
         contact_shape(where, {}, shape, rounding(smallest_detail(shape), kMaxOfTriangles)));
   } else if (shape.type == "plane") {
-    s.kind = RigidSurface::Kind::plane;
+    s.kind = surface_contact::RigidSurface::Kind::plane;
   } else if (is_other_convex(shape)) {
-    s.kind = RigidSurface::Kind::convex;
-    s.solid = std::make_shared<contact::Shape>(
+    s.kind = surface_contact::RigidSurface::Kind::convex;
+    s.solid = std::make_shared<geometry::Shape>(
         contact_shape(where, {}, shape, rounding(half_size(shape), kMaxOfHulls)));
   } else {
     throw InputError(where,

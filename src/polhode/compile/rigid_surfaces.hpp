@@ -33,7 +33,7 @@ struct CableSizes {
 /// A shape for contact with surfaces of solids, in its own coordinates. Its edges are rounded by
 /// the tolerance of the gap, as far as the shape allows.
 /// @throws InputError if it has no form for a kind of shape.
-[[nodiscard]] RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape,
-                                         double tolerance);
+[[nodiscard]] surface_contact::RigidSurface rigid_surface(const std::string& where,
+                                                          const ShapeSpec& shape, double tolerance);
 
 }  // namespace polhode

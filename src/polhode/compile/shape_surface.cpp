@@ -8,8 +8,8 @@ namespace polhode {
 
 namespace {
 
-TriangleSurface field_surface(const ShapeSpec& shape) {
-  TriangleSurface field;
+geometry::TriangleSurface field_surface(const ShapeSpec& shape) {
+  geometry::TriangleSurface field;
   const int columns = shape.columns, rows = static_cast<int>(shape.heights.size()) / columns;
   for (int iy = 0; iy < rows; ++iy)
     for (int ix = 0; ix < columns; ++ix)
@@ -29,18 +29,20 @@ TriangleSurface field_surface(const ShapeSpec& shape) {
 
 std::vector<Vec3> hull_points(const ShapeSpec& shape) {
   if (shape.file.empty()) return shape.points;
-  return scaled(read_surface(shape.file), shape.scale).points;
+  return geometry::scaled(geometry::read_surface(shape.file), shape.scale).points;
 }
 
-TriangleSurface shape_surface(std::string_view where, const ShapeSpec& shape, int segments) {
-  if (const ShapeKind* kind = find_shape_kind(shape.type))
-    return shape_surface(*kind, shape.sizes, segments);
-  if (shape.type == "hull") return contact::convex_hull(where, hull_points(shape));
+geometry::TriangleSurface shape_surface(std::string_view where, const ShapeSpec& shape,
+                                        int segments) {
+  if (const geometry::ShapeKind* kind = geometry::find_shape_kind(shape.type))
+    return geometry::shape_surface(*kind, shape.sizes, segments);
+  if (shape.type == "hull") return geometry::convex_hull(where, hull_points(shape));
   if (shape.type == "height_field") return field_surface(shape);
   if (shape.type != "mesh") return {};
-  TriangleSurface surface = scaled(read_surface(shape.file), shape.scale);
-  check_closed(shape.file, surface);
-  orient_outward(surface);
+  geometry::TriangleSurface surface =
+      geometry::scaled(geometry::read_surface(shape.file), shape.scale);
+  geometry::check_closed(shape.file, surface);
+  geometry::orient_outward(surface);
   return surface;
 }
 

@@ -13,8 +13,8 @@ namespace polhode {
 /// none.
 /// @param where  Path of the shape in the user's model, first part of messages.
 /// @throws InputError if a file cannot be read, a mesh is not closed, or a hull has no volume.
-[[nodiscard]] TriangleSurface shape_surface(std::string_view where, const ShapeSpec& shape,
-                                            int segments);
+[[nodiscard]] geometry::TriangleSurface shape_surface(std::string_view where,
+                                                      const ShapeSpec& shape, int segments);
 
 /// Points of a hull: given ones, or those of its file [m].
 /// @throws InputError if the file cannot be read.

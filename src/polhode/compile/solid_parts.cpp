@@ -6,8 +6,8 @@
 
 namespace polhode {
 
-MaterialDescription material_description(const MaterialSpec& material) {
-  MaterialDescription d{.kind = material.type, .values = material.parameters};
+solids::MaterialDescription material_description(const MaterialSpec& material) {
+  solids::MaterialDescription d{.kind = material.type, .values = material.parameters};
   if (material.fibre) {
     d.fibre = material.fibre->law;
     d.fibre_values = material.fibre->parameters;
@@ -19,14 +19,14 @@ MaterialDescription material_description(const MaterialSpec& material) {
 
 std::vector<std::string> solid_element_names() {
   std::vector<std::string> names;
-  for (const ElementKind& kind : element_kinds())
+  for (const solids::ElementKind& kind : solids::element_kinds())
     for (const std::string& name : {kind.shape, kind.name})
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   return names;
 }
 
 std::string cell_of_element(std::string_view element) {
-  for (const ElementKind& kind : element_kinds())
+  for (const solids::ElementKind& kind : solids::element_kinds())
     if (kind.name == element || kind.shape == element) return kind.shape;
   return {};
 }

@@ -11,7 +11,7 @@
 namespace polhode {
 
 /// Description of a model's material for the registry of materials.
-[[nodiscard]] MaterialDescription material_description(const MaterialSpec& material);
+[[nodiscard]] solids::MaterialDescription material_description(const MaterialSpec& material);
 
 /// Valid names of a solid's element: kinds of the registry, and cells such as hex8, for which the
 /// kind is chosen by the material.

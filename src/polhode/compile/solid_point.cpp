@@ -20,7 +20,7 @@ constexpr double kOutside = 1e-6;
 constexpr int kPointIterations = 30;
 
 /// Distance of reference coordinates outside a cell; negative inside.
-double outside(const CellShape& shape, const Vec3& xi) {
+double outside(const solids::CellShape& shape, const Vec3& xi) {
   const auto beyond = [&](int c) { return std::abs(xi[c]) - 1.0; };
   const double corner = std::max({-xi[0], -xi[1], xi[0] + xi[1] - 1.0});
   if (shape.corners == 8) return std::max({beyond(0), beyond(1), beyond(2)});
@@ -29,13 +29,13 @@ double outside(const CellShape& shape, const Vec3& xi) {
 }
 
 /// Reference coordinates of X in an element, if it lies there.
-std::optional<Vec3> inverse_map(const CellShape& shape, const std::vector<Vec3>& nodes,
+std::optional<Vec3> inverse_map(const solids::CellShape& shape, const std::vector<Vec3>& nodes,
                                 const Vec3& X, double size) {
   Vec3 xi = Vec3::Zero();
   for (const Vec3& node : shape.nodes) xi += node / static_cast<double>(shape.nodes.size());
   for (int iteration = 0; iteration < kPointIterations; ++iteration) {
-    const Vec N = shape_functions(shape, xi);
-    const Mat dN = shape_gradients(shape, xi);
+    const Vec N = solids::shape_functions(shape, xi);
+    const Mat dN = solids::shape_gradients(shape, xi);
     Vec3 rest = X;
     Mat3 J = Mat3::Zero();
     for (std::size_t a = 0; a < nodes.size(); ++a) {
@@ -55,7 +55,7 @@ std::optional<Vec3> inverse_map(const CellShape& shape, const std::vector<Vec3>&
 
 }  // namespace
 
-SolidPoint solid_point(std::string_view where, const Mesh& mesh, const Vec3& X) {
+SolidPoint solid_point(std::string_view where, const solids::Mesh& mesh, const Vec3& X) {
   std::vector<Vec3> nodes;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const std::span<const int> of_element = mesh.element_nodes(e);
@@ -70,10 +70,10 @@ SolidPoint solid_point(std::string_view where, const Mesh& mesh, const Vec3& X) 
     const double size = (most - least).norm();
     const Vec3 margin = Vec3::Constant(0.1 * size);
     if ((X - least + margin).minCoeff() < 0.0 || (most - X + margin).minCoeff() < 0.0) continue;
-    const CellShape& shape = mesh.element_shape(e);
+    const solids::CellShape& shape = mesh.element_shape(e);
     const std::optional<Vec3> xi = inverse_map(shape, nodes, X, size);
     if (!xi) continue;
-    const Vec N = shape_functions(shape, *xi);
+    const Vec N = solids::shape_functions(shape, *xi);
     return {{of_element.begin(), of_element.end()}, {N.begin(), N.end()}};
   }
   std::size_t nearest = 0;

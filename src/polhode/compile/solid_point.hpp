@@ -26,6 +26,7 @@ struct SolidPoint {
 /// Point of a mesh at X, by the shape functions of the element containing it.
 /// @param X  In the mesh's own coordinates [m].
 /// @throws InputError, at `where`, if it lies in no element; the message names the nearest node.
-[[nodiscard]] SolidPoint solid_point(std::string_view where, const Mesh& mesh, const Vec3& X);
+[[nodiscard]] SolidPoint solid_point(std::string_view where, const solids::Mesh& mesh,
+                                     const Vec3& X);
 
 }  // namespace polhode

@@ -28,12 +28,12 @@ constexpr int kMaxParts = 1000;  ///< Of an edge.
 constexpr double kFree = 2.0;
 
 /// Test points of a shape: balls of its rounding about these points are inside it.
-std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
+std::vector<Vec3> places_within(const geometry::Shape& shape, double spacing) {
   std::vector<Vec3> list = shape.corners;
-  if (shape.solid == contact::Solid::polyhedron)
+  if (shape.solid == geometry::Solid::polyhedron)
     list.push_back(std::accumulate(list.begin(), list.end(), Vec3(Vec3::Zero())) /
                    static_cast<double>(list.size()));
-  for (const contact::Shape::Edge& edge : shape.edges) {
+  for (const geometry::Shape::Edge& edge : shape.edges) {
     const Vec3 &p = shape.corners[static_cast<std::size_t>(edge.i)],
                &q = shape.corners[static_cast<std::size_t>(edge.j)];
     const int parts = static_cast<int>(std::min(1.0 * kMaxParts, (q - p).norm() / spacing));
@@ -77,12 +77,12 @@ class Finder {
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(surface.side.index)];
     const ShapeSpec& spec = body.shapes[surface.shape];
     if (spec.type == "plane") return;  // a half space
-    const contact::Shape shape =
+    const geometry::Shape shape =
         contact_shape(shape_path(body, surface.shape), shape_place(body, spec), spec);
     const int carrier = map_.body[static_cast<std::size_t>(surface.side.index)];
     const BodyStep at =
         carrier == kGround ? BodyStep::ground(1.0) : system_.instant(state_, carrier);
-    const SolidInside& solid = inside(surface.own);
+    const surface_contact::SolidInside& solid = inside(surface.own);
     for (const Vec3& Z : places_within(shape, kSpacing * solid.size())) {
       if (const auto found = solid.overlap(at.r_n + at.Lambda_n * Z, shape.rounding))
         note(surface.side, surface.own, *found);
@@ -90,26 +90,28 @@ class Finder {
   }
 
   /// Finds overlaps of points of a solid or of a cable with another solid.
-  void look_for_points(const ContactMap::Surface& surface, const SolidContact& contact) {
-    const SolidInside& solid = inside(surface.side);
+  void look_for_points(const ContactMap::Surface& surface,
+                       const surface_contact::SolidContact& contact) {
+    const surface_contact::SolidInside& solid = inside(surface.side);
     if (surface.own == surface.side) {
       if (const auto found = solid.overlap_with_itself()) note(surface.own, surface.side, *found);
       return;
     }
-    for (const MeshPoint& point : contact.points())
+    for (const surface_contact::MeshPoint& point : contact.points())
       if (const auto found = solid.overlap(point.at(state_.node_x.data()), contact.radius()))
         note(surface.own, surface.side, *found);
   }
 
-  const SolidInside& inside(const Side& side) {
+  const surface_contact::SolidInside& inside(const Side& side) {
     const int solid = side.index;
     const auto known = inside_.find(solid);
     if (known != inside_.end()) return known->second;
-    const MeshSurface boundary = solid_boundary(map_.solids[static_cast<std::size_t>(solid)]);
+    const surface_contact::MeshSurface boundary =
+        solid_boundary(map_.solids[static_cast<std::size_t>(solid)]);
     return inside_.try_emplace(solid, boundary, state_.node_x.data()).first->second;
   }
 
-  void note(const Side& own, const Side& side, const SurfaceOverlap& found) {
+  void note(const Side& own, const Side& side, const surface_contact::SurfaceOverlap& found) {
     const auto known = std::find_if(list_.begin(), list_.end(), [&](const SideOverlap& o) {
       return std::minmax(o.own, o.side) == std::minmax(own, side);
     });
@@ -128,13 +130,14 @@ class Finder {
   double free_gap_ = 0.0;  ///< Of the present surface [m].
   std::vector<SideOverlap> list_;
   std::set<std::tuple<Side, Side, std::size_t>> seen_;
-  std::map<int, SolidInside> inside_;  ///< By Model::solids.
+  std::map<int, surface_contact::SolidInside> inside_;  ///< By Model::solids.
 };
 
 }  // namespace
 
-MeshSurface solid_boundary(const SolidMap& solid) {
-  return triangulated(system_faces(solid, select_faces("", solid.plan.mesh, {})));
+surface_contact::MeshSurface solid_boundary(const SolidMap& solid) {
+  return surface_contact::triangulated(
+      system_faces(solid, solids::select_faces("", solid.plan.mesh, {})));
 }
 
 std::vector<SideOverlap> surface_overlaps(const Model& model, const System& system,

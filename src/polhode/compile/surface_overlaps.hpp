@@ -18,7 +18,7 @@ struct SideOverlap {
 };
 
 /// Complete boundary of a solid.
-[[nodiscard]] MeshSurface solid_boundary(const SolidMap& solid);
+[[nodiscard]] surface_contact::MeshSurface solid_boundary(const SolidMap& solid);
 
 /// Overlaps of surfaces with shapes, and of solids, bodies and cables with solids, beyond what
 /// their contact allows, at the deepest point of each two sides; also solids without a gap. Fully

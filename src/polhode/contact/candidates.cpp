@@ -13,14 +13,15 @@ namespace {
 constexpr std::size_t kManyCorners = 64;
 
 /// Bounding box of a shape, grown by `margin`.
-Bounds bounds_of(const Shape& s, const Vec3& r, const Mat3& Lambda, double margin) {
+geometry::Bounds bounds_of(const geometry::Shape& s, const Vec3& r, const Mat3& Lambda,
+                           double margin) {
   if (s.corners.empty() || s.corners.size() > kManyCorners || s.round()) {
     const Vec3 centre = r + Lambda * s.bound_centre;
     const Vec3 half = Vec3::Constant(s.bound_radius + margin);
     return {centre - half, centre + half};
   }
-  Bounds b{Vec3::Constant(std::numeric_limits<double>::infinity()),
-           Vec3::Constant(-std::numeric_limits<double>::infinity())};
+  geometry::Bounds b{Vec3::Constant(std::numeric_limits<double>::infinity()),
+                     Vec3::Constant(-std::numeric_limits<double>::infinity())};
   for (const Vec3& X : s.corners) {
     const Vec3 x = r + Lambda * X;
     b.low = b.low.cwiseMin(x);
@@ -42,7 +43,7 @@ double ContactSet::moved(int body, const Vec3& r, const Mat3& Lambda) const {
 }
 
 void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points) {
-  const Shape &A = shapes_[a].shape, &B = shapes_[b].shape;
+  const geometry::Shape &A = shapes_[a].shape, &B = shapes_[b].shape;
   Point sample;
   sample.a = a, sample.b = b;
   complete_law(sample, dt);
@@ -114,7 +115,7 @@ void ContactSet::find_candidates(double dt) {
   for (int u : unbounded)
     for (int i : bounded) {
       const Reference &step = reference_of(i, ground), &base = reference_of(u, ground);
-      const Shape &s = shapes_[i].shape, &plane = shapes_[u].shape;
+      const geometry::Shape &s = shapes_[i].shape, &plane = shapes_[u].shape;
       const Vec3 centre = step.r + step.Lambda * s.bound_centre;
       const Vec3 normal = base.Lambda * plane.axes.col(2);
       const double height = normal.dot(centre - base.r - base.Lambda * plane.centre);

@@ -39,9 +39,9 @@ bool is_closed_form_point(const PointData& data) {
 }
 
 SpherePairCache sphere_pair_cache(const PointData& data, const BodyStep& a, const BodyStep& b) {
-  const Shape &A = *data.a, &B = *data.b;
+  const geometry::Shape &A = *data.a, &B = *data.b;
   SpherePairCache s;
-  const bool plane = B.solid == Solid::half_space;
+  const bool plane = B.solid == geometry::Solid::half_space;
   s.holds = A.corners[data.pair.i].isZero(0.0) && (plane ? !b.moves : B.centre.isZero(0.0));
   if (!s.holds) return s;
   const double rho = A.rounding + B.rounding;
@@ -73,10 +73,11 @@ double SpherePairCache::part(const BodyStep& on_a, const BodyStep& on_b, const V
 
 double closed_form_gap_n1(const PointData& data, double gap_n, const BodyStep& a,
                           const BodyStep& b) {
-  const Shape &A = *data.a, &B = *data.b;
+  const geometry::Shape &A = *data.a, &B = *data.b;
   const Ends p = carried(a, A.corners[data.pair.i]), q = carried(b, B.centre);
   const Vec3 w_n = p.at_n - q.at_n, w_n1 = p.at_n1 - q.at_n1, moved = p.moved - q.moved;
-  if (B.solid == Solid::ball) return gap_n + (w_n + w_n1).dot(moved) / (w_n.norm() + w_n1.norm());
+  if (B.solid == geometry::Solid::ball)
+    return gap_n + (w_n + w_n1).dot(moved) / (w_n.norm() + w_n1.norm());
   const Ends normal = turned(b, B.axes.col(2));
   return gap_n + 0.5 * ((normal.at_n + normal.at_n1).dot(moved) + normal.moved.dot(w_n + w_n1));
 }
@@ -84,13 +85,13 @@ double closed_form_gap_n1(const PointData& data, double gap_n, const BodyStep& a
 /// @eq{contact-point-plane} @eq{contact-sphere-sphere} @eq{contact-bristle} @eq{contact-spring}
 PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1, const BodyStep& a,
                              const BodyStep& b, const StepContext& context, PointReport* report) {
-  const Shape &A = *data.a, &B = *data.b;
+  const geometry::Shape &A = *data.a, &B = *data.b;
   const Ends p = carried(a, A.corners[data.pair.i]), q = carried(b, B.centre);
   const Vec3 point = 0.5 * (p.at_n + p.at_n1);
   const Vec3 r_a = a.r_n + 0.5 * a.u, r_b = b.r_n + 0.5 * b.u;
   Vec3 N, n, c;
   Vec3 spring_normal;
-  if (B.solid == Solid::half_space) {
+  if (B.solid == geometry::Solid::half_space) {
     const Ends normal = turned(b, B.axes.col(2));
     N = 0.5 * (normal.at_n + normal.at_n1);
     n = N.normalized();

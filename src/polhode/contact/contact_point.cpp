@@ -16,10 +16,10 @@ constexpr double kLargestShift = 0.1;
 
 /// A cheap point near the contact at t_n, the origin in which gaps are computed.
 Vec3 near_contact(const PointData& data, const BodyStep& a) {
-  const Shape& A = *data.a;
+  const geometry::Shape& A = *data.a;
   if (is_of_corner(data.pair.kind)) return a.r_n + a.Lambda_n * A.corners[data.pair.i];
   if (data.pair.kind == GapKind::edge_edge) {
-    const Shape::Edge& e = A.edges[data.pair.i];
+    const geometry::Shape::Edge& e = A.edges[data.pair.i];
     return a.r_n + a.Lambda_n * (0.5 * (A.corners[e.i] + A.corners[e.j]));
   }
   return a.r_n;
@@ -202,12 +202,12 @@ class Evaluation {
   /// no correction. @eq{contact-point-plane} @eq{contact-sphere-sphere}
   void closed_forms() {
     if (!has_closed_form(data_)) return;
-    const Shape &A = *data_.a, &B = *data_.b;
+    const geometry::Shape &A = *data_.a, &B = *data_.b;
     const Vec3& Z = A.corners[data_.pair.i];
     const V3<double> p_0 = n_a_.point(Z);
     const V3<T> p_1 = e_a_.point(Z);
     point_N_ = average(p_0, p_1, 0.5);
-    if (B.solid == Solid::half_space) {
+    if (B.solid == geometry::Solid::half_space) {
       const Vec3 normal = B.axes.col(2);
       N_ = average(n_b_.vector(normal), e_b_.vector(normal), 0.5);
     } else {
@@ -219,7 +219,7 @@ class Evaluation {
 
   /// Δg of a closed form, from the displacements of points and normal. @eq{contact-gap-change}
   [[nodiscard]] T closed_form_change() const {
-    const Shape &A = *data_.a, &B = *data_.b;
+    const geometry::Shape &A = *data_.a, &B = *data_.b;
     const auto moved = [](const Motion<T>& m, const V3<double>& z_0, const V3<T>& z_1) {
       return cross(m.theta, average(z_0, z_1, 0.5));
     };
@@ -228,7 +228,7 @@ class Evaluation {
                     moved(move_b_, n_b_.vector(Y), e_b_.vector(Y));
     const V3<double> w_0 = n_a_.point(Z) - n_b_.point(Y);
     const V3<T> w_1 = e_a_.point(Z) - e_b_.point(Y);
-    if (B.solid == Solid::ball) return dot(w_0 + w_1, u) / (norm(w_0) + norm(w_1));
+    if (B.solid == geometry::Solid::ball) return dot(w_0 + w_1, u) / (norm(w_0) + norm(w_1));
     const Vec3 normal = B.axes.col(2);
     const V3<double> n_0 = n_b_.vector(normal);
     const V3<T> n_1 = e_b_.vector(normal);
@@ -433,7 +433,7 @@ PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep&
 
 bool has_closed_form(const PointData& data) {
   return data.pair.kind == GapKind::point_solid &&
-         (data.b->solid == Solid::half_space || data.b->solid == Solid::ball);
+         (data.b->solid == geometry::Solid::half_space || data.b->solid == geometry::Solid::ball);
 }
 
 double gap_n1(const PointData& data, double gap_n, const BodyStep& a, const BodyStep& b) {

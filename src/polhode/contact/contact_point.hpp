@@ -74,8 +74,8 @@ struct FrictionShare {
 /// Data of a contact point in a step: features, laws, history.
 struct PointData {
   FeaturePair pair;
-  const Shape* a = nullptr;
-  const Shape* b = nullptr;
+  const geometry::Shape* a = nullptr;
+  const geometry::Shape* b = nullptr;
   NormalLaw normal;
   FrictionLaw friction;
   double rate_damping = 0.0;  ///< c of λ·max(0, 1 − c Δg/Δt) [s/m].

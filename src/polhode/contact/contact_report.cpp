@@ -67,10 +67,10 @@ void add_fully_enclosed(const std::vector<PlacedShape>& shapes, Touch&& touch, A
                         Overlaps& deepest) {
   const int n = static_cast<int>(shapes.size());
   for (int b = 0; b < n; ++b) {
-    const Shape& B = shapes[b].shape;
-    if (B.solid != Solid::surface) continue;
+    const geometry::Shape& B = shapes[b].shape;
+    if (B.solid != geometry::Solid::surface) continue;
     for (int a = 0; a < n; ++a) {
-      const Shape& A = shapes[a].shape;
+      const geometry::Shape& A = shapes[a].shape;
       if (a == b || !A.bounded() || deepest.contains(std::minmax(a, b)) || !touch(a, b)) continue;
       const Placement<double> at_a = at(a), at_b = at(b);
       const Vec3 between = value(at_a.point(A.bound_centre)) - value(at_b.point(B.bound_centre));

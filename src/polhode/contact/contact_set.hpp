@@ -47,7 +47,7 @@ struct ContactMaterial {
 struct PlacedShape {
   int body = kGround;
   std::string name;
-  Shape shape;
+  geometry::Shape shape;
   int material = -1;                  ///< From add_material(); −1: the default law.
   std::uint32_t groups = 1;           ///< Collision groups of the shape.
   std::uint32_t meets = 0xffffffffu;  ///< Groups it collides with; both shapes have to agree.
@@ -315,8 +315,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   std::vector<double> saved_, totals_;
   bool loaded_ = false, touched_ = false;
   double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;
-  BroadPhase broad_;
-  std::vector<Bounds> bounds_;
+  geometry::BroadPhase broad_;
+  std::vector<geometry::Bounds> bounds_;
   std::vector<std::pair<int, int>> near_;
   int tightest_ = -1;
   bool pointwise_ = false;  ///< The evaluation is pointwise; closed forms differ in the last bit.

@@ -24,18 +24,20 @@ constexpr double kParallel = 0.02;
 /// direction across the mouth, and range above it in which its contacts become those of one.
 constexpr double kSteepFrom = 2e-3, kSteepRange = 8e-3;
 
-double radius_of(const Shape& s) { return s.half[0] + s.rounding; }
+double radius_of(const geometry::Shape& s) { return s.half[0] + s.rounding; }
 
-bool is_cone(const Shape& s) { return s.round() && s.flat_ends.size() == 1; }
-bool is_cylinder(const Shape& s) { return s.round() && s.flat_ends.size() == 2; }
+bool is_cone(const geometry::Shape& s) { return s.round() && s.flat_ends.size() == 1; }
+bool is_cylinder(const geometry::Shape& s) { return s.round() && s.flat_ends.size() == 2; }
 /// Whether the shape is a cylinder that is longer than wide; others lie flat on a rim.
-bool is_bar(const Shape& s) { return is_cylinder(s) && s.half[2] > s.half[0]; }
+bool is_bar(const geometry::Shape& s) { return is_cylinder(s) && s.half[2] > s.half[0]; }
 
 /// Whether the shape has a straight side, or flank, about its axis.
-bool has_side(const Shape& s) { return is_tube(s) || (s.round() && !s.flat_ends.empty()); }
+bool has_side(const geometry::Shape& s) {
+  return is_tube(s) || (s.round() && !s.flat_ends.empty());
+}
 
 /// Angle between the axis and the side; zero but for a cone.
-double flank_angle(const Shape& s) {
+double flank_angle(const geometry::Shape& s) {
   return is_cone(s) ? std::atan2(s.half[0], 2.0 * s.half[2]) : 0.0;
 }
 
@@ -43,7 +45,7 @@ double flank_angle(const Shape& s) {
 /// coordinates of b.
 class Finder {
  public:
-  Finder(const Shape& a, const Shape& b, const Placement<double>& at_a,
+  Finder(const geometry::Shape& a, const geometry::Shape& b, const Placement<double>& at_a,
          const Placement<double>& at_b, double distance, bool swapped,
          std::vector<OrderedPair>& found)
       : a_(a),
@@ -59,20 +61,21 @@ class Finder {
   /// Adds points of a against b. @param other  The search with both shapes exchanged: features of
   /// `a` near b.
   void points(const Finder& other) {
-    if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
+    if (b_.solid == geometry::Solid::ball && a_.solid == geometry::Solid::ball && swapped_) return;
     // A tube is in contact with a plane as a cylinder is.
-    const bool stands = is_tube(a_) && b_.solid == Solid::half_space;
+    const bool stands = is_tube(a_) && b_.solid == geometry::Solid::half_space;
     if (is_tube(a_) && !stands) return points_of_tube(other);
     // A ball has a single corner; the other shape's corners against it would duplicate the pair.
-    if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
-    const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
+    if (b_.solid == geometry::Solid::ball && a_.solid != geometry::Solid::ball) return;
+    const bool faces =
+        b_.solid == geometry::Solid::polyhedron || b_.solid == geometry::Solid::surface;
     const bool some = a_.tree && !stands;
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
       if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
       // A fixed point of a rim acts on a plane where the rim lies flat.
       const bool rim = stands || i < a_.rim_corners;
-      add_point(i, rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none);
+      add_point(i, rim && b_.solid == geometry::Solid::half_space ? Fade::flat : Fade::none);
     }
   }
 
@@ -86,7 +89,7 @@ class Finder {
       for (int j : edges_) {
         if (!b_.edges[j].convex || (tubes && !is_inner_edge(b_, j))) continue;
         const Vec3 &q = b_.corners[b_.edges[j].i], v = b_.corners[b_.edges[j].j] - q;
-        const SegmentsRegion r = nearest_on_segments(p, u, q, v);
+        const geometry::SegmentsRegion r = geometry::nearest_on_segments(p, u, q, v);
         if ((p + r.s * u - q - r.t * v).norm() < reach())
           push({GapKind::edge_edge, i, j, Fade::parallel});
       }
@@ -99,7 +102,7 @@ class Finder {
     const bool whole = a_.flat_ends.empty();
     const int parts = whole ? 1 : static_cast<int>(a_.flat_ends.size());
     const Fade fade = whole ? Fade::none : Fade::parallel;
-    if (b_.solid == Solid::half_space) {
+    if (b_.solid == geometry::Solid::half_space) {
       for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, fade});
       return;
     }
@@ -112,7 +115,7 @@ class Finder {
         add({GapKind::round_round, 0, 0, Fade::none});
     }
     // Contact of parallel sides, at the discs at their ends.
-    if (sides || (has_side(a_) && b_.solid == Solid::segment))
+    if (sides || (has_side(a_) && b_.solid == geometry::Solid::segment))
       for (int i = 0; i < parts; ++i) add({GapKind::end_round, i, 0, Fade::none});
     if (is_tube(a_) && is_bar(b_)) rims();
     if (b_.round() || (is_tube(a_) && !is_round_tube())) return;
@@ -121,15 +124,15 @@ class Finder {
       if (is_tube(b_)) {
         add({GapKind::part_solid, i, 0, Fade::none});
         add({GapKind::part_end, i, 0, Fade::none});
-      } else if (b_.solid == Solid::surface) {
+      } else if (b_.solid == geometry::Solid::surface) {
         add({GapKind::part_surface, i, 0, Fade::none});
-      } else if (b_.solid == Solid::polyhedron) {
+      } else if (b_.solid == geometry::Solid::polyhedron) {
         add({GapKind::part_solid, i, 0, Fade::none});
       }
     if (is_tube(a_) && !tubes) rims();
     // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
     // part: only edges without faces are left, capsules and rims of tubes.
-    if (whole && b_.solid != Solid::segment && !is_tube(b_)) return;
+    if (whole && b_.solid != geometry::Solid::segment && !is_tube(b_)) return;
     for (int j : edges_) {
       if (!b_.edges[j].convex || (is_tube(b_) && !is_inner_edge(b_, j))) continue;
       if (!has_side(a_) || (is_tube(b_) && !tubes)) {
@@ -215,7 +218,7 @@ class Finder {
     });
     std::erase_if(corners_, [&](int k) { return !in_region({b_.corners[k]}); });
   }
-  [[nodiscard]] static Eigen::AlignedBox3d box_of(const Shape& s) {
+  [[nodiscard]] static Eigen::AlignedBox3d box_of(const geometry::Shape& s) {
     return {s.tree->low(), s.tree->high()};
   }
   /// Whether the bounding box of points intersects the region.
@@ -227,8 +230,9 @@ class Finder {
 
   /// Whether a is a tube whose outer side and rims act, instead of its polygon.
   [[nodiscard]] bool is_round_tube() const {
-    return is_tube(a_) && (b_.solid == Solid::polyhedron || b_.solid == Solid::segment ||
-                           b_.round() || b_.solid == Solid::surface);
+    return is_tube(a_) &&
+           (b_.solid == geometry::Solid::polyhedron || b_.solid == geometry::Solid::segment ||
+            b_.round() || b_.solid == geometry::Solid::surface);
   }
   /// Adds points of a tube a: corners of its outer rims against round bodies, those of its inner
   /// rims against a ball or capsule that does not fit into it and may touch all of a rim at once,
@@ -239,16 +243,17 @@ class Finder {
       for (int i : other.corners_)
         if (is_tube(b_) || on_inner_side(a_, i) == plug) add_point(i, Fade::none);
     const bool lid = is_cylinder(b_);
-    if (lid || b_.solid == Solid::polyhedron || (b_.solid == Solid::surface && !is_tube(b_)))
+    if (lid || b_.solid == geometry::Solid::polyhedron ||
+        (b_.solid == geometry::Solid::surface && !is_tube(b_)))
       for (int i : a_.face_points) add_point(i, lid ? Fade::aligned : Fade::none);
   }
   /// Whether b is a ball or capsule that does not fit into the tube a.
   [[nodiscard]] bool is_plug() const {
-    return (b_.solid == Solid::ball || b_.solid == Solid::segment) &&
+    return (b_.solid == geometry::Solid::ball || b_.solid == geometry::Solid::segment) &&
            a_.rounding + b_.rounding > a_.half[1];
   }
   void add_point(int i, Fade fade) {
-    if (b_.solid != Solid::surface) return add({GapKind::point_solid, i, 0, fade});
+    if (b_.solid != geometry::Solid::surface) return add({GapKind::point_solid, i, 0, fade});
     const Vec3 x = in_b(a_.corners[i]);
     if (out_of_ball(x, 0.0) || !in_region({x})) return;
     add({is_tube(b_) ? GapKind::point_solid : GapKind::point_surface, i, 0, fade});
@@ -278,7 +283,7 @@ class Finder {
     }
     add(pair);
   }
-  const Shape &a_, &b_;
+  const geometry::Shape &a_, &b_;
   const Placement<double>&at_a_, &at_b_;
   double distance_;
   bool swapped_;
@@ -289,9 +294,9 @@ class Finder {
 
 }  // namespace
 
-void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
-                        const Placement<double>& at_second, double distance,
-                        std::vector<OrderedPair>& found) {
+void near_feature_pairs(const geometry::Shape& first, const geometry::Shape& second,
+                        const Placement<double>& at_first, const Placement<double>& at_second,
+                        double distance, std::vector<OrderedPair>& found) {
   if (!first.bounded() && !second.bounded()) return;
   const auto start = static_cast<std::ptrdiff_t>(found.size());
   Finder forth(first, second, at_first, at_second, distance, false, found);

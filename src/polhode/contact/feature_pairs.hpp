@@ -30,8 +30,8 @@ struct OrderedPair {
 /// are in contact at the discs at their ends. A tube is represented by the cylinder between its
 /// outer rims, by its rims and by its inner side.
 /// @eq{contact-sum-of-features}
-void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
-                        const Placement<double>& at_second, double distance,
-                        std::vector<OrderedPair>& found);
+void near_feature_pairs(const geometry::Shape& first, const geometry::Shape& second,
+                        const Placement<double>& at_first, const Placement<double>& at_second,
+                        double distance, std::vector<OrderedPair>& found);
 
 }  // namespace polhode::contact

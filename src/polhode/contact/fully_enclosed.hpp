@@ -17,7 +17,8 @@ struct FullyEnclosed {
 /// Whether a shape lies inside a closed surface, or below one with a border, without intersecting
 /// it. Nearby features cannot decide this, as triangles have two sides.
 /// @param b  A Solid::surface.
-[[nodiscard]] std::optional<FullyEnclosed> fully_enclosed(const Shape& a, const Shape& b,
+[[nodiscard]] std::optional<FullyEnclosed> fully_enclosed(const geometry::Shape& a,
+                                                          const geometry::Shape& b,
                                                           const Placement<double>& at_a,
                                                           const Placement<double>& at_b);
 

@@ -11,27 +11,27 @@
 namespace polhode::contact {
 
 template <class T>
-Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
-                     const TriangleRegion& r, const Placement<T>& at_b) {
+Gap<T> over_triangle(const V3<T>& x, double rho_a, const geometry::Shape& b, int triangle,
+                     const geometry::TriangleRegion& r, const Placement<T>& at_b) {
   const auto& c = b.triangles[triangle];
   Gap<T> g;
   const V3<T> first = at_b.point(b.corners[c[r.k]]);
   switch (r.kind) {
-    case TriangleRegion::face: {
+    case geometry::TriangleRegion::face: {
       // A surface has two sides; the solid of a polyhedron has one.
       const Vec3& normal = b.planes[triangle].normal;
-      const bool behind = b.solid == Solid::surface &&
+      const bool behind = b.solid == geometry::Solid::surface &&
                           normal.dot(at_b.to_body(value(x))) < b.planes[triangle].offset;
       g = over_plane(x, first, at_b.vector(behind ? Vec3(-normal) : normal), rho_a, b.rounding);
       return g;
     }
-    case TriangleRegion::edge: {
+    case geometry::TriangleRegion::edge: {
       const V3<T> along = at_b.between(b.corners[c[r.k]], b.corners[c[(r.k + 1) % 3]]);
       g = between_points(x, on_line(x, first, along), rho_a, b.rounding);
       g.feature = 1 + b.triangle_edges[triangle][r.k];
       return g;
     }
-    case TriangleRegion::corner:
+    case geometry::TriangleRegion::corner:
       g = between_points(x, first, rho_a, b.rounding);
       g.feature = -1 - c[r.k];
       return g;
@@ -42,7 +42,8 @@ Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
 namespace {
 
 template <class T>
-Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+Gap<T> over_segment(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                    const Placement<T>& at_b) {
   const Vec3 &p = b.corners[b.edges[0].i], &q = b.corners[b.edges[0].j];
   const Vec3 v = q - p, X = at_b.to_body(value(x));
   const double t = (X - p).dot(v) / v.squaredNorm();
@@ -55,12 +56,13 @@ Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, const Placemen
 }
 
 template <class T>
-Gap<T> edges(const Shape& a, const Shape& b, int i, int j, const Placement<T>& at_a,
-             const Placement<T>& at_b) {
-  const Shape::Edge &e = a.edges[i], &f = b.edges[j];
+Gap<T> edges(const geometry::Shape& a, const geometry::Shape& b, int i, int j,
+             const Placement<T>& at_a, const Placement<T>& at_b) {
+  const geometry::Shape::Edge &e = a.edges[i], &f = b.edges[j];
   const V3<T> p = at_a.point(a.corners[e.i]), u = at_a.between(a.corners[e.i], a.corners[e.j]);
   const V3<T> q = at_b.point(b.corners[f.i]), v = at_b.between(b.corners[f.i], b.corners[f.j]);
-  const SegmentsRegion r = nearest_on_segments(value(p), value(u), value(q), value(v));
+  const geometry::SegmentsRegion r =
+      geometry::nearest_on_segments(value(p), value(u), value(q), value(v));
   V3<T> x = p + r.s * u, y = q + r.t * v;
   if (r.s_free && r.t_free) {
     const V3<T> w = p - q;
@@ -84,30 +86,32 @@ Gap<T> edges(const Shape& a, const Shape& b, int i, int j, const Placement<T>& a
 }  // namespace
 
 template <class T>
-Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+Gap<T> point_over_solid(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                        const Placement<T>& at_b) {
   switch (b.solid) {
-    case Solid::ball:
+    case geometry::Solid::ball:
       return between_points(x, at_b.point(b.centre), rho_a, b.rounding);
-    case Solid::segment:
+    case geometry::Solid::segment:
       return over_segment(x, rho_a, b, at_b);
-    case Solid::polyhedron: {
-      const PolyhedronRegion r = nearest_on_polyhedron(b, at_b.to_body(value(x)));
+    case geometry::Solid::polyhedron: {
+      const geometry::PolyhedronRegion r =
+          geometry::nearest_on_polyhedron(b, at_b.to_body(value(x)));
       return over_triangle(x, rho_a, b, r.triangle, r.region, at_b);
     }
-    case Solid::round:
+    case geometry::Solid::round:
       return b.round_solid->formulas<T>().over(x, rho_a, b, at_b);
-    case Solid::surface:
+    case geometry::Solid::surface:
       if (is_tube(b)) return over_tube(x, rho_a, b, at_b);
       break;
-    case Solid::half_space:
+    case geometry::Solid::half_space:
       return over_plane(x, at_b.point(b.centre), at_b.vector(b.axes.col(2)), rho_a, b.rounding);
   }
   throw std::logic_error("point_over_solid: a surface of triangles is no solid");
 }
 
 template <class T>
-Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placement<T>& at_a,
-           const Placement<T>& at_b) {
+Gap<T> gap(const FeaturePair& pair, const geometry::Shape& a, const geometry::Shape& b,
+           const Placement<T>& at_a, const Placement<T>& at_b) {
   const auto x = [&] { return at_a.point(a.corners[pair.i]); };
   switch (pair.kind) {
     case GapKind::point_solid:
@@ -115,8 +119,8 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
     case GapKind::point_triangle: {
       const V3<T> p = x();
       const auto& c = b.triangles[pair.j];
-      const TriangleRegion r = nearest_on_triangle(at_b.to_body(value(p)), b.corners[c[0]],
-                                                   b.corners[c[1]], b.corners[c[2]]);
+      const geometry::TriangleRegion r = geometry::nearest_on_triangle(
+          at_b.to_body(value(p)), b.corners[c[0]], b.corners[c[1]], b.corners[c[2]]);
       return over_triangle(p, a.rounding, b, pair.j, r, at_b);
     }
     case GapKind::point_surface:
@@ -149,9 +153,10 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
 }
 
 template <class T>
-FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const Shape& b,
-                                  const Placement<T>& at_a, const Placement<T>& at_b) {
-  const auto edge = [](const Shape& s, int k) {
+FadeDirections<T> fade_directions(const FeaturePair& pair, const geometry::Shape& a,
+                                  const geometry::Shape& b, const Placement<T>& at_a,
+                                  const Placement<T>& at_b) {
+  const auto edge = [](const geometry::Shape& s, int k) {
     return Vec3((s.corners[s.edges[k].j] - s.corners[s.edges[k].i]).normalized());
   };
   if (pair.kind == GapKind::edge_edge)
@@ -166,28 +171,32 @@ FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const
           at_b.vector(b.axes.col(2))};
 }
 
-template Gap<double> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<double>&,
-                         const Placement<double>&);
-template Gap<Dual> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<Dual>&,
-                       const Placement<Dual>&);
-template Gap<Fine> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<Fine>&,
-                       const Placement<Fine>&);
-template FadeDirections<double> fade_directions(const FeaturePair&, const Shape&, const Shape&,
-                                                const Placement<double>&, const Placement<double>&);
-template FadeDirections<Dual> fade_directions(const FeaturePair&, const Shape&, const Shape&,
-                                              const Placement<Dual>&, const Placement<Dual>&);
-template Gap<double> point_over_solid(const V3<double>&, double, const Shape&,
+template Gap<double> gap(const FeaturePair&, const geometry::Shape&, const geometry::Shape&,
+                         const Placement<double>&, const Placement<double>&);
+template Gap<Dual> gap(const FeaturePair&, const geometry::Shape&, const geometry::Shape&,
+                       const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> gap(const FeaturePair&, const geometry::Shape&, const geometry::Shape&,
+                       const Placement<Fine>&, const Placement<Fine>&);
+template FadeDirections<double> fade_directions(const FeaturePair&, const geometry::Shape&,
+                                                const geometry::Shape&, const Placement<double>&,
+                                                const Placement<double>&);
+template FadeDirections<Dual> fade_directions(const FeaturePair&, const geometry::Shape&,
+                                              const geometry::Shape&, const Placement<Dual>&,
+                                              const Placement<Dual>&);
+template Gap<double> point_over_solid(const V3<double>&, double, const geometry::Shape&,
                                       const Placement<double>&);
-template Gap<Fine> point_over_solid(const V3<Fine>&, double, const Shape&, const Placement<Fine>&);
-template Gap<Dual> point_over_solid(const V3<Dual>&, double, const Shape&, const Placement<Dual>&);
+template Gap<Fine> point_over_solid(const V3<Fine>&, double, const geometry::Shape&,
+                                    const Placement<Fine>&);
+template Gap<Dual> point_over_solid(const V3<Dual>&, double, const geometry::Shape&,
+                                    const Placement<Dual>&);
 
-template Gap<double> over_triangle(const V3<double>&, double, const Shape&, int,
-                                   const TriangleRegion&, const Placement<double>&);
+template Gap<double> over_triangle(const V3<double>&, double, const geometry::Shape&, int,
+                                   const geometry::TriangleRegion&, const Placement<double>&);
 
-template Gap<Dual> over_triangle(const V3<Dual>&, double, const Shape&, int, const TriangleRegion&,
-                                 const Placement<Dual>&);
+template Gap<Dual> over_triangle(const V3<Dual>&, double, const geometry::Shape&, int,
+                                 const geometry::TriangleRegion&, const Placement<Dual>&);
 
-template Gap<Fine> over_triangle(const V3<Fine>&, double, const Shape&, int, const TriangleRegion&,
-                                 const Placement<Fine>&);
+template Gap<Fine> over_triangle(const V3<Fine>&, double, const geometry::Shape&, int,
+                                 const geometry::TriangleRegion&, const Placement<Fine>&);
 
 }  // namespace polhode::contact

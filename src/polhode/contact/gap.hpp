@@ -80,17 +80,18 @@ inline constexpr int kInMouth = 1;
 
 /// Distance, normal and point of a feature pair; with Dual also their derivatives.
 template <class T>
-[[nodiscard]] Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b,
-                         const Placement<T>& at_a, const Placement<T>& at_b);
+[[nodiscard]] Gap<T> gap(const FeaturePair& pair, const geometry::Shape& a,
+                         const geometry::Shape& b, const Placement<T>& at_a,
+                         const Placement<T>& at_b);
 
 /// Gap of a ball of radius rho around the point x against the whole convex solid of b.
 template <class T>
-[[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho, const Shape& b,
+[[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho, const geometry::Shape& b,
                                       const Placement<T>& at_b);
 
 /// Part of the round solid a for contact with faces: an ellipsoid itself, a slightly convex disc at
 /// the end `which` of a cylinder or cone, or the outer rim of a tube there.
-[[nodiscard]] Shape part_of(const Shape& a, int which);
+[[nodiscard]] geometry::Shape part_of(const geometry::Shape& a, int which);
 
 /// Directions compared by a Fade, fixed to a and b (of any constant length).
 template <class T>
@@ -98,8 +99,8 @@ struct FadeDirections {
   V3<T> a, b;
 };
 template <class T>
-[[nodiscard]] FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a,
-                                                const Shape& b, const Placement<T>& at_a,
+[[nodiscard]] FadeDirections<T> fade_directions(const FeaturePair& pair, const geometry::Shape& a,
+                                                const geometry::Shape& b, const Placement<T>& at_a,
                                                 const Placement<T>& at_b);
 
 }  // namespace polhode::contact

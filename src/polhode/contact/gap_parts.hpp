@@ -39,43 +39,46 @@ template <class T>
 
 /// Gaps with a round solid on side a.
 template <class T>
-[[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,
+[[nodiscard]] V3<T> extreme_point(const geometry::Shape& a, int which, const V3<T>& n,
                                   const Placement<T>& at_a);
 /// @param part  See part_of(); moves with a.
 /// @param reach  See surface_reach().
 template <class T>
-[[nodiscard]] Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair,
-                              const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b);
+[[nodiscard]] Gap<T> part_gap(const geometry::Shape& part, double reach, const FeaturePair& pair,
+                              const geometry::Shape& b, const Placement<T>& at_a,
+                              const Placement<T>& at_b);
 /// Gap of the lowest point of a part in front of an end of a tube.
 template <class T>
-[[nodiscard]] Gap<T> part_over_end(const Shape& part, const Shape& tube, const Placement<T>& at_a,
-                                   const Placement<T>& at_tube);
+[[nodiscard]] Gap<T> part_over_end(const geometry::Shape& part, const geometry::Shape& tube,
+                                   const Placement<T>& at_a, const Placement<T>& at_tube);
 /// Gap of a ball of radius rho around the point x against the whole surface of b.
 /// @param reach  Features with larger gaps than this do not count besides a nearer one [m].
 template <class T>
-[[nodiscard]] Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
-                                        const Placement<T>& at_b);
+[[nodiscard]] Gap<T> point_over_surface(const V3<T>& x, double rho, double reach,
+                                        const geometry::Shape& b, const Placement<T>& at_b);
 /// Appends the gaps of that ball at the places of the surface where the distance is least, if below
 /// `reach` and seen from outside.
-void point_gaps(const Vec3& x, double rho, double reach, const Shape& b,
+void point_gaps(const Vec3& x, double rho, double reach, const geometry::Shape& b,
                 const Placement<double>& at_b, std::vector<Gap<double>>& gaps);
 /// Appends the gaps of a part at such places.
-void part_gaps(const Shape& part, double reach, const Shape& b, const Placement<double>& at_a,
-               const Placement<double>& at_b, std::vector<Gap<double>>& gaps);
+void part_gaps(const geometry::Shape& part, double reach, const geometry::Shape& b,
+               const Placement<double>& at_a, const Placement<double>& at_b,
+               std::vector<Gap<double>>& gaps);
 /// Gap of a point against a triangle of b whose nearest part is known.
 template <class T>
-[[nodiscard]] Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
-                                   const TriangleRegion& r, const Placement<T>& at_b);
+[[nodiscard]] Gap<T> over_triangle(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                                   int triangle, const geometry::TriangleRegion& r,
+                                   const Placement<T>& at_b);
 template <class T>
-[[nodiscard]] Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge,
+[[nodiscard]] Gap<T> round_over_edge(const geometry::Shape& a, const geometry::Shape& b, int edge,
                                      const Placement<T>& at_a, const Placement<T>& at_b);
 template <class T>
-[[nodiscard]] Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
-                                      const Placement<T>& at_b);
+[[nodiscard]] Gap<T> round_over_round(const geometry::Shape& a, const geometry::Shape& b,
+                                      const Placement<T>& at_a, const Placement<T>& at_b);
 /// Slightly convex disc at an end of a cylinder, cone or tube, an ellipsoid.
-[[nodiscard]] Shape end_disc(const Shape& a, int which);
+[[nodiscard]] geometry::Shape end_disc(const geometry::Shape& a, int which);
 template <class T>
-[[nodiscard]] Gap<T> end_over_round(const Shape& a, int which, const Shape& b,
+[[nodiscard]] Gap<T> end_over_round(const geometry::Shape& a, int which, const geometry::Shape& b,
                                     const Placement<T>& at_a, const Placement<T>& at_b);
 
 }  // namespace polhode::contact

@@ -9,31 +9,10 @@
 #include <polhode/contact/point_weight.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
+#include <polhode/contact_laws/exit_speed.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
-namespace polhode {
-
-namespace {
-
-/// Largest part of the approach speed that an overlapping point may return to separate. With at
-/// most half of it the next step dissipates at least what this one adds.
-constexpr double kComesFree = 0.5;
-
-}  // namespace
-
-/// Smallest normal speed after an impulse. A landing point is slowed down so that it reaches gap 0
-/// in the next step. A rebounding point does so in the step after which it would be too close. Both
-/// keep p_n (w_n + w_{n+1}) from being positive.
-double least_exit_speed(double gap, double w, double restitution, double dt, double slow) {
-  const double land = -0.5 * w - gap / dt;
-  if (w >= 0.0) return std::min(land, -w);
-  const double back = -restitution * w;
-  if (restitution == 0.0 || (restitution < 1.0 && back < slow))
-    return std::min(land, -kComesFree * w);
-  return gap < -(1.5 - 0.5 * restitution) * w * dt ? back : -w - 2.0 * gap / dt;
-}
-
-namespace contact {
+namespace polhode::contact {
 
 namespace {
 
@@ -51,7 +30,7 @@ bool is_of_edges(GapKind kind) { return kind == GapKind::edge_edge || kind == Ga
 
 /// Corrects the gap of the inner rim of a tube and an edge, as mend_edges().
 bool mend_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
-  const Shape::Edge& f = d.b->edges[d.pair.j];
+  const geometry::Shape::Edge& f = d.b->edges[d.pair.j];
   const Vec3 n = value(g.normal), c = value(g.point);
   const Vec3 p = b.r_n + b.Lambda_n * d.b->corners[f.i];
   const Vec3 u = b.Lambda_n * (d.b->corners[f.j] - d.b->corners[f.i]);
@@ -69,9 +48,9 @@ bool mend_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<doub
 /// from the outward sides of the edges.
 bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
   if (d.pair.kind == GapKind::rim_edge) return mend_rim(d, a, b, g);
-  const Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
-  const auto inner = [](const Shape& s, const Shape::Edge& edge, const BodyStep& step,
-                        const Vec3& x) {
+  const geometry::Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
+  const auto inner = [](const geometry::Shape& s, const geometry::Shape::Edge& edge,
+                        const BodyStep& step, const Vec3& x) {
     const Vec3 p = step.r_n + step.Lambda_n * s.corners[edge.i];
     const Vec3 u = step.Lambda_n * (s.corners[edge.j] - s.corners[edge.i]);
     const double t = (x - p).dot(u) / u.squaredNorm();
@@ -125,8 +104,8 @@ bool passes_through(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& y, 
 
 /// Whether an edge of a passes through the surface of b. Cores of bodies in contact are apart by
 /// their roundings.
-bool pierces(const Shape& a, int edge, const Shape& b, const Placement<double>& at_a,
-             const Placement<double>& at_b) {
+bool pierces(const geometry::Shape& a, int edge, const geometry::Shape& b,
+             const Placement<double>& at_a, const Placement<double>& at_b) {
   const Vec3 p = at_b.to_body(value(at_a.point(a.corners[a.edges[edge].i]))),
              q = at_b.to_body(value(at_a.point(a.corners[a.edges[edge].j])));
   bool found = false;
@@ -315,7 +294,7 @@ std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> 
     if (least > 0.0 || p.gap_n - least < kFast * std::min(p.data.a->detail, p.data.b->detail))
       continue;
     const BothPlaced from = BothPlaced::at_start(a, b), to = BothPlaced::at_end(a, b);
-    const Shape &A = *p.data.a, &B = *p.data.b;
+    const geometry::Shape &A = *p.data.a, &B = *p.data.b;
     const auto [e, f] = std::pair(p.data.pair.i, p.data.pair.j);
     const bool again =
         last >= 0 && points_[last].key[0] == p.key[0] && points_[last].data.pair.i == e;
@@ -391,6 +370,4 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
   return work;
 }
 
-}  // namespace contact
-
-}  // namespace polhode
+}  // namespace polhode::contact

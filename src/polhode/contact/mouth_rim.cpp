@@ -31,7 +31,7 @@ struct Rim {
   Vec3 centre, first, across;  ///< `first` and `across` are unit vectors.
   double radius;               ///< [m]
 
-  Rim(const Shape& tube, bool upper)
+  Rim(const geometry::Shape& tube, bool upper)
       : centre(tube.centre + (upper ? tube.half[2] : -tube.half[2]) * tube.axes.col(2)),
         first(tube.axes.col(0)),
         across(tube.axes.col(1)),
@@ -108,7 +108,7 @@ struct Arc {
   double low, high;
 
   /// @param bar  Unit direction of the bar, in body coordinates of the tube.
-  Arc(const Shape& tube, int number, const Vec3& bar)
+  Arc(const geometry::Shape& tube, int number, const Vec3& bar)
       : rim(tube, is_upper_rim(number)), whole(is_whole_rim(number)) {
     const double middle =
         std::atan2(bar.dot(rim.across), bar.dot(rim.first)) + (number % 2 == 0 ? 0.0 : 0.5 * kTurn);
@@ -119,7 +119,7 @@ struct Arc {
 /// Place on a rim where it is nearest to a solid, with the derivatives of its angle.
 /// @param more_curvature  Added to that of the distance. @param turned  Receives the derivatives.
 template <class T>
-V3<T> nearest_to_solid(const Rim& rim, double angle, const Shape& solid,
+V3<T> nearest_to_solid(const Rim& rim, double angle, const geometry::Shape& solid,
                        const Placement<T>& at_tube, const Placement<T>& at_solid,
                        double more_curvature, T& turned) {
   const V3<T> y = place_on(rim, angle, at_tube);
@@ -148,11 +148,12 @@ V3<T> nearest_to_solid(const Rim& rim, double angle, const Shape& solid,
 /// Distance of a solid from the places of a rim, in the coordinates of the solid's body.
 struct SeenRim {
   Vec3 centre, first, across;
-  const Shape& solid;
+  const geometry::Shape& solid;
   Mat3 no_turn = Mat3::Identity();
 
   template <class T>
-  SeenRim(const Rim& rim, const Shape& s, const Placement<T>& at_tube, const Placement<T>& at_solid)
+  SeenRim(const Rim& rim, const geometry::Shape& s, const Placement<T>& at_tube,
+          const Placement<T>& at_solid)
       : solid(s) {
     const auto seen = [&](const Vec3& X) { return at_solid.to_body(value(at_tube.point(X))); };
     centre = seen(rim.centre);
@@ -170,14 +171,14 @@ struct SeenRim {
 
 }  // namespace
 
-Vec3 out_of_rim(const Shape& tube, const Vec3& X) {
+Vec3 out_of_rim(const geometry::Shape& tube, const Vec3& X) {
   const Vec3 axis = tube.axes.col(2), x = X - tube.centre;
   const double height = axis.dot(x);
   return std::copysign(1.0, height) * axis - (x - height * axis).normalized();
 }
 
 template <class T>
-Gap<T> rim_over_edge(const Shape& tube, int number, const Shape& b, int j,
+Gap<T> rim_over_edge(const geometry::Shape& tube, int number, const geometry::Shape& b, int j,
                      const Placement<T>& at_tube, const Placement<T>& at_b) {
   const Vec3 &P = b.corners[b.edges[j].i], &Q = b.corners[b.edges[j].j];
   const V3<T> start = at_b.point(P), along = at_b.between(P, Q);
@@ -226,8 +227,8 @@ namespace {
 /// place.
 template <class T>
 Gap<T> solid_over_arc(const Rim& rim, double low, double high, int intervals, double to_middle,
-                      const Shape& tube, const Shape& solid, const Placement<T>& at_tube,
-                      const Placement<T>& at_solid) {
+                      const geometry::Shape& tube, const geometry::Shape& solid,
+                      const Placement<T>& at_tube, const Placement<T>& at_solid) {
   const SeenRim seen(rim, solid, at_tube, at_solid);
   const double middle = 0.5 * (low + high), more = to_middle * rim.radius;
   const auto slope = [&](double angle) {
@@ -252,8 +253,8 @@ Gap<T> solid_over_arc(const Rim& rim, double low, double high, int intervals, do
 }  // namespace
 
 template <class T>
-Gap<T> rim_over_bar(const Shape& tube, int number, const Shape& bar, const Placement<T>& at_tube,
-                    const Placement<T>& at_bar) {
+Gap<T> rim_over_bar(const geometry::Shape& tube, int number, const geometry::Shape& bar,
+                    const Placement<T>& at_tube, const Placement<T>& at_bar) {
   const Vec3 axis = at_tube.to_body(value(at_bar.point(bar.centre + bar.axes.col(2)))) -
                     at_tube.to_body(value(at_bar.point(bar.centre)));
   const Arc arc(tube, number, axis);
@@ -262,8 +263,8 @@ Gap<T> rim_over_bar(const Shape& tube, int number, const Shape& bar, const Place
 }
 
 template <class T>
-Gap<T> arc_over_solid(const Shape& tube, int arc, const Shape& solid, const Placement<T>& at_tube,
-                      const Placement<T>& at_solid) {
+Gap<T> arc_over_solid(const geometry::Shape& tube, int arc, const geometry::Shape& solid,
+                      const Placement<T>& at_tube, const Placement<T>& at_solid) {
   const auto from_centre = [&](int corner) {
     return Vec3(tube.axes.transpose() * (tube.corners[corner] - tube.centre));
   };
@@ -275,23 +276,23 @@ Gap<T> arc_over_solid(const Shape& tube, int arc, const Shape& solid, const Plac
                         at_solid);
 }
 
-template Gap<double> rim_over_edge(const Shape&, int, const Shape&, int, const Placement<double>&,
-                                   const Placement<double>&);
-template Gap<Dual> rim_over_edge(const Shape&, int, const Shape&, int, const Placement<Dual>&,
-                                 const Placement<Dual>&);
-template Gap<Fine> rim_over_edge(const Shape&, int, const Shape&, int, const Placement<Fine>&,
-                                 const Placement<Fine>&);
-template Gap<double> rim_over_bar(const Shape&, int, const Shape&, const Placement<double>&,
-                                  const Placement<double>&);
-template Gap<Dual> rim_over_bar(const Shape&, int, const Shape&, const Placement<Dual>&,
-                                const Placement<Dual>&);
-template Gap<Fine> rim_over_bar(const Shape&, int, const Shape&, const Placement<Fine>&,
-                                const Placement<Fine>&);
-template Gap<double> arc_over_solid(const Shape&, int, const Shape&, const Placement<double>&,
-                                    const Placement<double>&);
-template Gap<Dual> arc_over_solid(const Shape&, int, const Shape&, const Placement<Dual>&,
-                                  const Placement<Dual>&);
-template Gap<Fine> arc_over_solid(const Shape&, int, const Shape&, const Placement<Fine>&,
-                                  const Placement<Fine>&);
+template Gap<double> rim_over_edge(const geometry::Shape&, int, const geometry::Shape&, int,
+                                   const Placement<double>&, const Placement<double>&);
+template Gap<Dual> rim_over_edge(const geometry::Shape&, int, const geometry::Shape&, int,
+                                 const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> rim_over_edge(const geometry::Shape&, int, const geometry::Shape&, int,
+                                 const Placement<Fine>&, const Placement<Fine>&);
+template Gap<double> rim_over_bar(const geometry::Shape&, int, const geometry::Shape&,
+                                  const Placement<double>&, const Placement<double>&);
+template Gap<Dual> rim_over_bar(const geometry::Shape&, int, const geometry::Shape&,
+                                const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> rim_over_bar(const geometry::Shape&, int, const geometry::Shape&,
+                                const Placement<Fine>&, const Placement<Fine>&);
+template Gap<double> arc_over_solid(const geometry::Shape&, int, const geometry::Shape&,
+                                    const Placement<double>&, const Placement<double>&);
+template Gap<Dual> arc_over_solid(const geometry::Shape&, int, const geometry::Shape&,
+                                  const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> arc_over_solid(const geometry::Shape&, int, const geometry::Shape&,
+                                  const Placement<Fine>&, const Placement<Fine>&);
 
 }  // namespace polhode::contact

@@ -18,27 +18,30 @@ inline constexpr int kHalfRims = 4, kRimArcs = 6;
 /// Gap of an arc of an inner rim and edge j of b. The normal points from b to the tube.
 /// @param number  Of the arc, below kRimArcs.
 template <class T>
-[[nodiscard]] Gap<T> rim_over_edge(const Shape& tube, int number, const Shape& b, int j,
-                                   const Placement<T>& at_tube, const Placement<T>& at_b);
+[[nodiscard]] Gap<T> rim_over_edge(const geometry::Shape& tube, int number,
+                                   const geometry::Shape& b, int j, const Placement<T>& at_tube,
+                                   const Placement<T>& at_b);
 
 /// Gap of half an inner rim and a cylinder, likewise; below kHalfRims.
 template <class T>
-[[nodiscard]] Gap<T> rim_over_bar(const Shape& tube, int number, const Shape& bar,
-                                  const Placement<T>& at_tube, const Placement<T>& at_bar);
+[[nodiscard]] Gap<T> rim_over_bar(const geometry::Shape& tube, int number,
+                                  const geometry::Shape& bar, const Placement<T>& at_tube,
+                                  const Placement<T>& at_bar);
 
 /// Whether an edge of a shape stands for an arc of an inner rim.
-[[nodiscard]] inline bool is_rim_arc(const Shape& s, int edge) {
+[[nodiscard]] inline bool is_rim_arc(const geometry::Shape& s, int edge) {
   return is_tube(s) && s.edges[edge].convex && is_inner_edge(s, edge);
 }
 
 /// Gap of an arc of an inner rim and a convex solid, which may touch all of the rim at once. The
 /// normal points from the solid to the tube.
 template <class T>
-[[nodiscard]] Gap<T> arc_over_solid(const Shape& tube, int arc, const Shape& solid,
-                                    const Placement<T>& at_tube, const Placement<T>& at_solid);
+[[nodiscard]] Gap<T> arc_over_solid(const geometry::Shape& tube, int arc,
+                                    const geometry::Shape& solid, const Placement<T>& at_tube,
+                                    const Placement<T>& at_solid);
 
 /// Direction, at a point near an inner rim and in body coordinates, away from the tube: to its axis
 /// and out of the mouth.
-[[nodiscard]] Vec3 out_of_rim(const Shape& tube, const Vec3& X);
+[[nodiscard]] Vec3 out_of_rim(const geometry::Shape& tube, const Vec3& X);
 
 }  // namespace polhode::contact

@@ -13,8 +13,8 @@ namespace {
 constexpr int kMaxDoublings = 60;
 
 /// Distance of two shapes [m].
-double distance_of(const Shape& a, const Shape& b, const Placement<double>& at_a,
-                   const Placement<double>& at_b) {
+double distance_of(const geometry::Shape& a, const geometry::Shape& b,
+                   const Placement<double>& at_a, const Placement<double>& at_b) {
   double least = std::numeric_limits<double>::infinity();
   if (!a.bounded() && !b.bounded()) return least;
   double near = 0.1 * std::min(a.size, b.size);

@@ -23,7 +23,7 @@ constexpr double kBulge = 2e-3;
 /// Data of each triangle, edge and corner of a surface for part_gap().
 struct SeenSurface {
   const SeenPart& part;
-  const Shape& b;
+  const geometry::Shape& b;
   double round;
   double reach;  ///< Edges with larger gaps need not be found [m].
   SeenPart::Sides sides = SeenPart::Sides::two;
@@ -87,7 +87,7 @@ const std::vector<SurfacePlace>& places_or_nearest(const SeenSurface& seen) {
   return places;
 }
 
-Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part) {
+Nearest nearest_of(const FeaturePair& pair, const geometry::Shape& b, const SeenPart& part) {
   Nearest best;
   if (pair.kind == GapKind::part_triangle) {
     part.face(b, pair.j, SeenPart::Sides::two, best);
@@ -120,7 +120,7 @@ Gap<T> turned_round(Gap<T> g, int feature) {
 }
 
 template <class T>
-Gap<T> over_face(const Shape& part, const Shape& b, int triangle, bool behind,
+Gap<T> over_face(const geometry::Shape& part, const geometry::Shape& b, int triangle, bool behind,
                  const Placement<T>& at_a, const Placement<T>& at_b) {
   const V3<T> n =
       at_b.vector(behind ? Vec3(-b.planes[triangle].normal) : b.planes[triangle].normal);
@@ -131,8 +131,8 @@ Gap<T> over_face(const Shape& part, const Shape& b, int triangle, bool behind,
 /// Position along the edge with its derivatives, by a Newton step. The distance depends on neither
 /// these nor the last digits of the position.
 template <class T>
-Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Placement<T>& at_a,
-                 const Placement<T>& at_b) {
+Gap<T> over_edge(const geometry::Shape& part, const geometry::Shape& b, int edge, double t,
+                 const Placement<T>& at_a, const Placement<T>& at_b) {
   const Vec3 &P = b.corners[b.edges[edge].i], &Q = b.corners[b.edges[edge].j];
   const V3<T> p = at_b.point(P), v = at_b.between(P, Q);
   T at(t);
@@ -156,8 +156,8 @@ Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Pl
 /// Point of the part farthest from the axis of a tube, where it is in contact with the inner side.
 /// The extent n·x of a convex body is largest there over all n normal to the axis.
 template <class T>
-V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T>& at_a,
-                         const Placement<T>& at_b) {
+V3<T> farthest_from_axis(const geometry::Shape& part, const geometry::Shape& tube,
+                         const Placement<T>& at_a, const Placement<T>& at_b) {
   const V3<T> e = at_b.vector(tube.axes.col(0)), f = at_b.vector(tube.axes.col(1));
   const V3<T> centre = at_a.point(part.centre), from = at_b.point(tube.centre);
   V3<T> axis[3];
@@ -199,9 +199,9 @@ V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T
 
 namespace {
 
-Shape ellipsoid_part(const Shape& a, const Vec3& centre, const Vec3& half) {
-  Shape part;
-  part.solid = Solid::round;
+geometry::Shape ellipsoid_part(const geometry::Shape& a, const Vec3& centre, const Vec3& half) {
+  geometry::Shape part;
+  part.solid = geometry::Solid::round;
   part.round_solid = &ellipsoid_solid();
   part.rounding = a.rounding;
   part.axes = a.axes;
@@ -212,7 +212,7 @@ Shape ellipsoid_part(const Shape& a, const Vec3& centre, const Vec3& half) {
 
 }  // namespace
 
-Shape end_disc(const Shape& a, int which) {
+geometry::Shape end_disc(const geometry::Shape& a, int which) {
   const auto& [end, radius] = a.flat_ends[static_cast<std::size_t>(which)];
   // A tube ends in front of the disc, so that only its rims meet what lies in front of the mouth.
   const double half = is_tube(a) ? hull_of_tube(a).half[2] : std::abs(end);
@@ -221,7 +221,7 @@ Shape end_disc(const Shape& a, int which) {
   return ellipsoid_part(a, a.centre + middle * a.axes.col(2), {radius, radius, bulge});
 }
 
-Shape part_of(const Shape& a, int which) {
+geometry::Shape part_of(const geometry::Shape& a, int which) {
   if (is_tube(a)) return outer_rim(a, which);
   return a.flat_ends.empty() ? ellipsoid_part(a, a.centre, a.half) : end_disc(a, which);
 }
@@ -230,11 +230,12 @@ namespace {
 
 /// Gap of a part to a nearest place of b.
 template <class T>
-Gap<T> over_nearest(const Shape& part, const SeenPart& seen, const Nearest& n, const Shape& b,
-                    const Placement<T>& at_a, const Placement<T>& at_b) {
+Gap<T> over_nearest(const geometry::Shape& part, const SeenPart& seen, const Nearest& n,
+                    const geometry::Shape& b, const Placement<T>& at_a, const Placement<T>& at_b) {
   if (n.kind == Nearest::face) {
     const auto& plane = b.planes[n.index];
-    const bool behind = b.solid == Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
+    const bool behind =
+        b.solid == geometry::Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
     return over_face(part, b, n.index, behind, at_a, at_b);
   }
   if (n.kind == Nearest::overlap) {
@@ -260,8 +261,8 @@ Nearest nearest_at(const SurfacePlace& p) {
 }  // namespace
 
 template <class T>
-Gap<T> part_over_end(const Shape& part, const Shape& tube, const Placement<T>& at_a,
-                     const Placement<T>& at_tube) {
+Gap<T> part_over_end(const geometry::Shape& part, const geometry::Shape& tube,
+                     const Placement<T>& at_a, const Placement<T>& at_tube) {
   const V3<T> axis = at_tube.vector(tube.axes.col(2));
   const V3<T> middle = at_tube.point(tube.centre);
   const double side = value(dot(axis, at_a.point(part.centre) - middle)) < 0.0 ? -1.0 : 1.0;
@@ -275,8 +276,8 @@ Gap<T> part_over_end(const Shape& part, const Shape& tube, const Placement<T>& a
 }
 
 template <class T>
-Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const Shape& b,
-                const Placement<T>& at_a, const Placement<T>& at_b) {
+Gap<T> part_gap(const geometry::Shape& part, double reach, const FeaturePair& pair,
+                const geometry::Shape& b, const Placement<T>& at_a, const Placement<T>& at_b) {
   if (is_tube(b) && pair.kind == GapKind::part_solid)
     return point_over_solid(farthest_from_axis(part, b, at_a, at_b), part.rounding, b, at_b);
   const SeenPart seen(part, at_a, at_b);
@@ -288,8 +289,9 @@ Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const 
   return sum.gap();
 }
 
-void part_gaps(const Shape& part, double reach, const Shape& b, const Placement<double>& at_a,
-               const Placement<double>& at_b, std::vector<Gap<double>>& gaps) {
+void part_gaps(const geometry::Shape& part, double reach, const geometry::Shape& b,
+               const Placement<double>& at_a, const Placement<double>& at_b,
+               std::vector<Gap<double>>& gaps) {
   const SeenPart seen(part, at_a, at_b);
   const SeenSurface surface{seen, b, part.rounding + b.rounding, reach,
                             SeenPart::Sides::two_or_through};
@@ -299,17 +301,18 @@ void part_gaps(const Shape& part, double reach, const Shape& b, const Placement<
     add_from_outside(over_nearest(part, seen, nearest_at(p), b, at_a, at_b), p, b, at_b, gaps);
 }
 
-template Gap<double> part_over_end(const Shape&, const Shape&, const Placement<double>&,
-                                   const Placement<double>&);
-template Gap<Dual> part_over_end(const Shape&, const Shape&, const Placement<Dual>&,
-                                 const Placement<Dual>&);
-template Gap<Fine> part_over_end(const Shape&, const Shape&, const Placement<Fine>&,
-                                 const Placement<Fine>&);
-template Gap<double> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
-                              const Placement<double>&, const Placement<double>&);
-template Gap<Dual> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
-                            const Placement<Dual>&, const Placement<Dual>&);
-template Gap<Fine> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
-                            const Placement<Fine>&, const Placement<Fine>&);
+template Gap<double> part_over_end(const geometry::Shape&, const geometry::Shape&,
+                                   const Placement<double>&, const Placement<double>&);
+template Gap<Dual> part_over_end(const geometry::Shape&, const geometry::Shape&,
+                                 const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> part_over_end(const geometry::Shape&, const geometry::Shape&,
+                                 const Placement<Fine>&, const Placement<Fine>&);
+template Gap<double> part_gap(const geometry::Shape&, double, const FeaturePair&,
+                              const geometry::Shape&, const Placement<double>&,
+                              const Placement<double>&);
+template Gap<Dual> part_gap(const geometry::Shape&, double, const FeaturePair&,
+                            const geometry::Shape&, const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> part_gap(const geometry::Shape&, double, const FeaturePair&,
+                            const geometry::Shape&, const Placement<Fine>&, const Placement<Fine>&);
 
 }  // namespace polhode::contact

@@ -19,7 +19,7 @@ namespace {
 
 /// Support point of a round solid, from its centre, in the unit direction n.
 template <class T>
-V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n) {
+V3<T> support(const geometry::Shape& s, const V3<T>* axes, const V3<T>& n) {
   return s.round_solid->formulas<T>().support(s, axes, n, blur::fine);
 }
 
@@ -28,7 +28,7 @@ template <class T>
 struct Axes {
   V3<T> axis[3];
   V3<T> centre;
-  Axes(const Shape& s, const Placement<T>& at) : centre(at.point(s.centre)) {
+  Axes(const geometry::Shape& s, const Placement<T>& at) : centre(at.point(s.centre)) {
     for (int i = 0; i < 3; ++i) axis[i] = at.vector(s.axes.col(i));
   }
 };
@@ -45,11 +45,11 @@ constexpr double kSlender = 1e-6;
 
 /// An edge as a slender cylinder. Unlike a straight line it has a unique nearest point to a face
 /// that it lies on.
-Shape needle(const Shape& b, int edge) {
+geometry::Shape needle(const geometry::Shape& b, int edge) {
   const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
-  Shape s;
+  geometry::Shape s;
   const double length = (q - p).norm(), thickness = kSlender * length;
-  s.solid = Solid::round;
+  s.solid = geometry::Solid::round;
   s.round_solid = &cylinder_solid();
   s.rounding = std::max(0.0, b.rounding - thickness);
   s.centre = 0.5 * (p + q);
@@ -62,7 +62,7 @@ Shape needle(const Shape& b, int edge) {
 
 /// @param start  Approximate direction from b to a.
 template <class T>
-Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
+Gap<T> smooth_gap(const geometry::Shape& a, const geometry::Shape& b, const Placement<T>& at_a,
                   const Placement<T>& at_b, const Vec3& start) {
   const Axes<T> on_a(a, at_a), on_b(b, at_b);
   const V3<T> between = on_a.centre - on_b.centre;
@@ -89,7 +89,7 @@ Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
 }  // namespace
 
 template <class T>
-V3<T> extreme_point(const Shape& a, int which, const V3<T>& n, const Placement<T>& at_a) {
+V3<T> extreme_point(const geometry::Shape& a, int which, const V3<T>& n, const Placement<T>& at_a) {
   const Axes<T> at(a, at_a);
   if (a.flat_ends.empty()) {
     const T components[3] = {-dot(at.axis[0], n), -dot(at.axis[1], n), -dot(at.axis[2], n)};
@@ -109,12 +109,14 @@ constexpr int kDirections = 24;
 /// Projections onto both shapes in turn in that search, from each direction and from the best.
 constexpr int kProjections = 3, kLastProjections = 6;
 
-double wall_of(const Shape& tube) { return tube.half[0] - tube.half[1] + 2.0 * tube.rounding; }
+double wall_of(const geometry::Shape& tube) {
+  return tube.half[0] - tube.half[1] + 2.0 * tube.rounding;
+}
 
 /// Whether a tube's hull, at this distance from another shape, stands for the tube: they do not
 /// overlap deeply, and the nearest place of the hull lies outside the middle of the wall. Elsewhere
 /// the other shape is within the tube, or in front of its mouth.
-bool hull_stands_for(const Shape& tube, const Vec3& nearest, double distance) {
+bool hull_stands_for(const geometry::Shape& tube, const Vec3& nearest, double distance) {
   const double half = 0.5 * wall_of(tube);
   return distance > -half &&
          std::hypot(nearest.x(), nearest.y()) > tube.half[0] + tube.rounding - half;
@@ -124,7 +126,7 @@ bool hull_stands_for(const Shape& tube, const Vec3& nearest, double distance) {
 /// found from several directions, no bound.
 /// @param distance  Gap of a place [m], and a point of the other shape near it.
 template <class Distance>
-Vec3 nearest_on_side(const Shape& tube, const Distance& distance) {
+Vec3 nearest_on_side(const geometry::Shape& tube, const Distance& distance) {
   const double R = tube.half[0], H = hull_of_tube(tube).half[2];
   const auto onto_side = [&](const Vec3& y) {
     const double q = std::hypot(y.x(), y.y());
@@ -159,7 +161,7 @@ Mat3 rotation(const Placement<T>& at) {
 /// Gap of the outer side of a tube over a shape that its hull does not stand for: no contact,
 /// unless it has passed through the wall.
 template <class T>
-Gap<T> side_over(const Shape& tube, const Shape& b, const Placement<T>& at_tube,
+Gap<T> side_over(const geometry::Shape& tube, const geometry::Shape& b, const Placement<T>& at_tube,
                  const Placement<T>& at_b) {
   const auto world = [&](const auto& at, const Vec3& y) {
     return at.point(tube.centre + tube.axes * y);
@@ -181,27 +183,28 @@ Gap<T> side_over(const Shape& tube, const Shape& b, const Placement<T>& at_tube,
 }
 
 /// Convex shape that stands for a round one: a tube's hull, the needle of a segment, or its own.
-Shape convex(const Shape& s) {
-  if (s.solid == Solid::segment) return needle(s, 0);
+geometry::Shape convex(const geometry::Shape& s) {
+  if (s.solid == geometry::Solid::segment) return needle(s, 0);
   if (is_tube(s)) return hull_of_tube(s);
-  Shape own;
+  geometry::Shape own;
   own.solid = s.solid, own.round_solid = s.round_solid;
   own.centre = s.centre, own.axes = s.axes, own.half = s.half, own.rounding = s.rounding;
   return own;
 }
 
 /// Flattens the ends of a shape for contact with a strictly convex one.
-void flatten(Shape& s) {
+void flatten(geometry::Shape& s) {
   if (s.round_solid->with_flat_ends) s.round_solid = s.round_solid->with_flat_ends;
 }
 
 /// The gap g of two convex shapes that stand for a and b, where hulls stand for tubes; elsewhere
 /// that of the tube's outer side.
 template <class T>
-Gap<T> gap_or_open(const Gap<T>& g, const Shape& convex_a, const Shape& a, const Shape& convex_b,
-                   const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b) {
+Gap<T> gap_or_open(const Gap<T>& g, const geometry::Shape& convex_a, const geometry::Shape& a,
+                   const geometry::Shape& convex_b, const geometry::Shape& b,
+                   const Placement<T>& at_a, const Placement<T>& at_b) {
   const Vec3 half = 0.5 * value(g.distance) * value(g.normal), middle = value(g.point);
-  const auto stands = [&](const Shape& s, const Placement<T>& at, const Vec3& nearest) {
+  const auto stands = [&](const geometry::Shape& s, const Placement<T>& at, const Vec3& nearest) {
     return !is_tube(s) || hull_stands_for(s, s.axes.transpose() * (at.to_body(nearest) - s.centre),
                                           value(g.distance));
   };
@@ -220,7 +223,8 @@ Gap<T> gap_or_open(const Gap<T>& g, const Shape& convex_a, const Shape& a, const
 /// Gap of two convex shapes that stand for a and b.
 /// @param start  Approximate direction from b to a.
 template <class T>
-Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, const Shape& b,
+Gap<T> convex_gap(const geometry::Shape& convex_a, const geometry::Shape& a,
+                  const geometry::Shape& convex_b, const geometry::Shape& b,
                   const Placement<T>& at_a, const Placement<T>& at_b, const Vec3& start) {
   return gap_or_open(smooth_gap(convex_a, convex_b, at_a, at_b, start), convex_a, a, convex_b, b,
                      at_a, at_b);
@@ -229,9 +233,9 @@ Gap<T> convex_gap(const Shape& convex_a, const Shape& a, const Shape& convex_b, 
 }  // namespace
 
 template <class T>
-Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
-                        const Placement<T>& at_b) {
-  Shape on_a = convex(a), on_b = convex(b);
+Gap<T> round_over_round(const geometry::Shape& a, const geometry::Shape& b,
+                        const Placement<T>& at_a, const Placement<T>& at_b) {
+  geometry::Shape on_a = convex(a), on_b = convex(b);
   // The end of one is flat to an ellipsoid, which is strictly convex.
   if (b.flat_ends.empty()) flatten(on_a);
   if (a.flat_ends.empty()) flatten(on_b);
@@ -240,19 +244,19 @@ Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a
 }
 
 template <class T>
-Gap<T> end_over_round(const Shape& a, int which, const Shape& b, const Placement<T>& at_a,
-                      const Placement<T>& at_b) {
-  const Shape disc = end_disc(a, which);
-  Shape other = convex(b);
+Gap<T> end_over_round(const geometry::Shape& a, int which, const geometry::Shape& b,
+                      const Placement<T>& at_a, const Placement<T>& at_b) {
+  const geometry::Shape disc = end_disc(a, which);
+  geometry::Shape other = convex(b);
   flatten(other);
   return convex_gap(disc, a, other, b, at_a, at_b,
                     value(at_a.point(disc.centre)) - value(at_b.point(other.centre)));
 }
 
 template <class T>
-Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement<T>& at_a,
-                       const Placement<T>& at_b) {
-  const Shape slender = needle(b, edge), own = convex(a);
+Gap<T> round_over_edge(const geometry::Shape& a, const geometry::Shape& b, int edge,
+                       const Placement<T>& at_a, const Placement<T>& at_b) {
+  const geometry::Shape slender = needle(b, edge), own = convex(a);
   if (is_rim_arc(b, edge)) {
     Gap<T> g = arc_over_solid(b, edge, own, at_b, at_a);
     g.normal = -g.normal;
@@ -265,26 +269,29 @@ Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement
   return convex_gap(own, a, slender, slender, at_a, at_b, value(at_b.vector(Vec3(X - along * v))));
 }
 
-template V3<double> extreme_point(const Shape&, int, const V3<double>&, const Placement<double>&);
-template V3<Dual> extreme_point(const Shape&, int, const V3<Dual>&, const Placement<Dual>&);
-template V3<Fine> extreme_point(const Shape&, int, const V3<Fine>&, const Placement<Fine>&);
-template Gap<double> round_over_edge(const Shape&, const Shape&, int, const Placement<double>&,
-                                     const Placement<double>&);
-template Gap<Dual> round_over_edge(const Shape&, const Shape&, int, const Placement<Dual>&,
-                                   const Placement<Dual>&);
-template Gap<Fine> round_over_edge(const Shape&, const Shape&, int, const Placement<Fine>&,
-                                   const Placement<Fine>&);
-template Gap<double> round_over_round(const Shape&, const Shape&, const Placement<double>&,
-                                      const Placement<double>&);
-template Gap<Fine> round_over_round(const Shape&, const Shape&, const Placement<Fine>&,
-                                    const Placement<Fine>&);
-template Gap<Dual> round_over_round(const Shape&, const Shape&, const Placement<Dual>&,
-                                    const Placement<Dual>&);
-template Gap<double> end_over_round(const Shape&, int, const Shape&, const Placement<double>&,
-                                    const Placement<double>&);
-template Gap<Dual> end_over_round(const Shape&, int, const Shape&, const Placement<Dual>&,
-                                  const Placement<Dual>&);
-template Gap<Fine> end_over_round(const Shape&, int, const Shape&, const Placement<Fine>&,
-                                  const Placement<Fine>&);
+template V3<double> extreme_point(const geometry::Shape&, int, const V3<double>&,
+                                  const Placement<double>&);
+template V3<Dual> extreme_point(const geometry::Shape&, int, const V3<Dual>&,
+                                const Placement<Dual>&);
+template V3<Fine> extreme_point(const geometry::Shape&, int, const V3<Fine>&,
+                                const Placement<Fine>&);
+template Gap<double> round_over_edge(const geometry::Shape&, const geometry::Shape&, int,
+                                     const Placement<double>&, const Placement<double>&);
+template Gap<Dual> round_over_edge(const geometry::Shape&, const geometry::Shape&, int,
+                                   const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> round_over_edge(const geometry::Shape&, const geometry::Shape&, int,
+                                   const Placement<Fine>&, const Placement<Fine>&);
+template Gap<double> round_over_round(const geometry::Shape&, const geometry::Shape&,
+                                      const Placement<double>&, const Placement<double>&);
+template Gap<Fine> round_over_round(const geometry::Shape&, const geometry::Shape&,
+                                    const Placement<Fine>&, const Placement<Fine>&);
+template Gap<Dual> round_over_round(const geometry::Shape&, const geometry::Shape&,
+                                    const Placement<Dual>&, const Placement<Dual>&);
+template Gap<double> end_over_round(const geometry::Shape&, int, const geometry::Shape&,
+                                    const Placement<double>&, const Placement<double>&);
+template Gap<Dual> end_over_round(const geometry::Shape&, int, const geometry::Shape&,
+                                  const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> end_over_round(const geometry::Shape&, int, const geometry::Shape&,
+                                  const Placement<Fine>&, const Placement<Fine>&);
 
 }  // namespace polhode::contact

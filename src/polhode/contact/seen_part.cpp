@@ -29,7 +29,7 @@ Vec3 across_axis(const Vec3& y) {
 
 }  // namespace
 
-double SeenPart::face(const Shape& b, int triangle, Sides sides, Nearest& best) const {
+double SeenPart::face(const geometry::Shape& b, int triangle, Sides sides, Nearest& best) const {
   const auto& c = b.triangles[triangle];
   const Vec3 &p = b.corners[c[0]], &q = b.corners[c[1]], &r = b.corners[c[2]];
   Vec3 n = b.planes[triangle].normal;
@@ -53,7 +53,7 @@ double SeenPart::face(const Shape& b, int triangle, Sides sides, Nearest& best) 
   return distance;
 }
 
-Nearest SeenPart::overlap(const Shape& b) const {
+Nearest SeenPart::overlap(const geometry::Shape& b) const {
   using Arc = std::pair<double, double>;
   constexpr double kTurn = 2.0 * std::numbers::pi;
   std::vector<Arc> inside{{0.0, kTurn}}, left;
@@ -95,7 +95,7 @@ Nearest SeenPart::overlap(const Shape& b) const {
 
 double SeenPart::bound(const Vec3& low, const Vec3& high) const {
   const Vec3 y = axes_.transpose() * (0.5 * (low + high) - centre_);
-  const double root = nearest_on_ellipsoid(half_, y);
+  const double root = geometry::nearest_on_ellipsoid(half_, y);
   const Vec3 n = y.cwiseQuotient((half_.cwiseAbs2().array() + root).matrix()).normalized();
   if (!n.allFinite()) return -farthest_ - (high - low).norm();
   return n.dot(y) - half_.cwiseProduct(n).norm() - 0.5 * (axes_ * n).cwiseAbs().dot(high - low);
@@ -109,7 +109,7 @@ double SeenPart::from(const Vec3& y, Vec3& n) const {
     n = distance > 0.0 ? Vec3(n / distance) : outward;
     return distance;
   }
-  const double root = nearest_on_ellipsoid(half_, y);
+  const double root = geometry::nearest_on_ellipsoid(half_, y);
   n = y.cwiseQuotient((half_.cwiseAbs2().array() + root).matrix()).normalized();
   return n.dot(y) - half_.cwiseProduct(n).norm();
 }
@@ -119,7 +119,7 @@ double SeenPart::corner(const Vec3& x) const {
   return ring_ ? from(axes_.transpose() * (x - centre_), n) : bound(x, x);
 }
 
-void SeenPart::edge(const Shape& b, int index, Nearest& best) const {
+void SeenPart::edge(const geometry::Shape& b, int index, Nearest& best) const {
   const Vec3 &p = b.corners[b.edges[index].i], v = b.corners[b.edges[index].j] - p;
   const double middle = std::clamp((centre_ - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
   if ((centre_ - p - middle * v).norm() - farthest_ > best.distance) return;
@@ -155,7 +155,7 @@ void SeenPart::edge(const Shape& b, int index, Nearest& best) const {
   slope < 0.0 ? refine(middle, 1.0) : refine(0.0, middle);
 }
 
-SeenPart::Height SeenPart::height_above(const Shape::Plane& plane) const {
+SeenPart::Height SeenPart::height_above(const geometry::Shape::Plane& plane) const {
   const Vec3 n = half_.x() * (axes_.transpose() * plane.normal);
   return {plane.normal.dot(centre_) - plane.offset, std::hypot(n.x(), n.y()),
           std::atan2(n.y(), n.x())};

@@ -23,7 +23,7 @@ class SeenPart {
   enum class Sides { one, two, two_or_through };
 
   template <class T>
-  SeenPart(const Shape& part, const Placement<T>& at_a, const Placement<T>& at_b)
+  SeenPart(const geometry::Shape& part, const Placement<T>& at_a, const Placement<T>& at_b)
       : ring_(is_ring(part)),
         half_(part.half),
         centre_(at_b.to_body(value(at_a.point(part.centre)))),
@@ -40,13 +40,13 @@ class SeenPart {
   /// @param sides  Of the triangle. `two_or_through`: a ring whose centre is in front of it may
   ///   also reach through it, but not by much.
   /// @returns the signed distance of the part from the plane.
-  double face(const Shape& b, int triangle, Sides sides, Nearest& best) const;
-  void edge(const Shape& b, int index, Nearest& best) const;
+  double face(const geometry::Shape& b, int triangle, Sides sides, Nearest& best) const;
+  void edge(const geometry::Shape& b, int index, Nearest& best) const;
   [[nodiscard]] double corner(const Vec3& x) const;
 
   /// Overlap of a ring and the convex polyhedron b: the face through which the arcs of it that lie
   /// below all planes leave on the shortest way, and the angle of their deepest place.
-  [[nodiscard]] Nearest overlap(const Shape& b) const;
+  [[nodiscard]] Nearest overlap(const geometry::Shape& b) const;
 
   /// Lower bound of the distance: convex bodies lie behind their tangent planes, so no point of a
   /// box is nearer.
@@ -57,7 +57,7 @@ class SeenPart {
   struct Height {
     double middle, most, highest;
   };
-  [[nodiscard]] Height height_above(const Shape::Plane& plane) const;
+  [[nodiscard]] Height height_above(const geometry::Shape::Plane& plane) const;
 
   /// Distance of a point from the part. @param n  Direction in which it grows, in axes of the part.
   [[nodiscard]] double from(const Vec3& y, Vec3& n) const;

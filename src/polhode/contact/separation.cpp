@@ -16,15 +16,16 @@ namespace {
 constexpr double kSharpening = 1e-2;
 
 /// Support point in the world from the centre, with its derivative by the direction.
-CurvedSupport curved_support(const Shape& s, const Mat3& axes, const Vec3& direction, double blur) {
+CurvedSupport curved_support(const geometry::Shape& s, const Mat3& axes, const Vec3& direction,
+                             double blur) {
   const CurvedSupport c = s.round_solid->curved_support(s, axes.transpose() * direction, blur);
   return {axes * c.x, axes * c.D * axes.transpose()};
 }
 
 /// Improves the direction at this blur.
 /// @param between  From the centre of b to that of a.
-void ascend(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
-            const Vec3& between, double blur, Separation& s) {
+void ascend(const geometry::Shape& a, const geometry::Shape& b, const Mat3& axes_a,
+            const Mat3& axes_b, const Vec3& between, double blur, Separation& s) {
   const auto offset = [&](const Vec3& n, Mat3* D) {
     const CurvedSupport on_a = curved_support(a, axes_a, -n, blur),
                         on_b = curved_support(b, axes_b, n, blur);
@@ -61,8 +62,8 @@ void ascend(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes
   s.distance = s.n.dot(w);
 }
 
-Separation separate_from(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
-                         const Vec3& between, const Vec3& start) {
+Separation separate_from(const geometry::Shape& a, const geometry::Shape& b, const Mat3& axes_a,
+                         const Mat3& axes_b, const Vec3& between, const Vec3& start) {
   Separation s;
   s.n = start.squaredNorm() > 0.0 ? Vec3(start.normalized()) : Vec3::UnitZ();
   double blur = blur::coarse;
@@ -85,8 +86,8 @@ void tangents(const Vec3& n, Vec3& e, Vec3& f) {
   f = n.cross(e);
 }
 
-Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
-                    const Vec3& between, const Vec3& start) {
+Separation separate(const geometry::Shape& a, const geometry::Shape& b, const Mat3& axes_a,
+                    const Mat3& axes_b, const Vec3& between, const Vec3& start) {
   const Separation s = separate_from(a, b, axes_a, axes_b, between, start);
   if (s.distance >= -(a.rounding + b.rounding)) return s;
   // Overlapping slender solids have a maximum on either side; one of them may be false.

@@ -20,7 +20,8 @@ struct Separation {
 /// Newton's method from a blurred maximum to finer ones.
 /// @param axes_a, axes_b  In the world. @param between  From the centre of b to that of a.
 /// @param start  Approximate direction from b to a, of any length.
-[[nodiscard]] Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a,
-                                  const Mat3& axes_b, const Vec3& between, const Vec3& start);
+[[nodiscard]] Separation separate(const geometry::Shape& a, const geometry::Shape& b,
+                                  const Mat3& axes_a, const Mat3& axes_b, const Vec3& between,
+                                  const Vec3& start);
 
 }  // namespace polhode::contact

@@ -31,16 +31,16 @@ constexpr double kLongestTurn = 0.6;
 
 /// Distance of the farthest point of a feature from the origin of its body, the lever arm of
 /// rotations.
-double lever(const Shape& s, const FeaturePair& f, bool side_a) {
+double lever(const geometry::Shape& s, const FeaturePair& f, bool side_a) {
   if (!s.bounded()) return 0.0;
   if (side_a && is_of_corner(f.kind)) return s.corners[f.i].norm();
-  if (s.solid == Solid::ball) return s.centre.norm();
+  if (s.solid == geometry::Solid::ball) return s.centre.norm();
   return s.reach;
 }
 
 /// Whether side a (or b) of a feature pair is a whole solid of revolution, or an end or rim of it:
 /// a rotation about its axis does not move it.
-bool is_of_revolution(const Shape& s, const FeaturePair& f, bool side_a) {
+bool is_of_revolution(const geometry::Shape& s, const FeaturePair& f, bool side_a) {
   const bool tube = is_tube(s);
   if (!tube && !(s.round() && s.half[0] == s.half[1])) return false;
   switch (f.kind) {
@@ -64,8 +64,8 @@ bool is_of_revolution(const Shape& s, const FeaturePair& f, bool side_a) {
 }
 
 /// Bound of the speed by a rotation, per unit of the increment, of the points of side a or b.
-double turning_speed(const Vec3& theta, const Mat3& Lambda, const Shape& s, const FeaturePair& f,
-                     bool side_a) {
+double turning_speed(const Vec3& theta, const Mat3& Lambda, const geometry::Shape& s,
+                     const FeaturePair& f, bool side_a) {
   if (theta.isZero(0.0)) return 0.0;
   const double far = lever(s, f, side_a);
   if (!is_of_revolution(s, f, side_a)) return theta.norm() * far;
@@ -125,7 +125,8 @@ bool has_part(GapKind kind) {
 
 /// Whether all of a part lies in front of the plane across a gap through its nearest point. A ring
 /// may have another shape within it, which its other side may approach faster.
-bool lies_in_front(const Shape& part, const Vec3& r, const Mat3& Lambda, const Gap<double>& g) {
+bool lies_in_front(const geometry::Shape& part, const Vec3& r, const Mat3& Lambda,
+                   const Gap<double>& g) {
   if (!is_ring(part)) return true;
   const Vec3 n = value(g.normal);
   const double nearest = n.dot(value(g.point)) + 0.5 * g.distance + part.rounding,
@@ -138,17 +139,18 @@ bool lies_in_front(const Shape& part, const Vec3& r, const Mat3& Lambda, const G
 constexpr int kShorterParts = 4;
 
 /// Points that span side a (or b) of a feature pair, if they are few. @returns how many.
-int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec3, 2>& points) {
+int few_points(const geometry::Shape& s, const FeaturePair& f, bool side_a,
+               std::array<Vec3, 2>& points) {
   if (side_a && is_of_corner(f.kind)) {
     points[0] = s.corners[f.i];
     return 1;
   }
-  if (s.solid == Solid::ball) {
+  if (s.solid == geometry::Solid::ball) {
     points[0] = s.centre;
     return 1;
   }
   if (f.kind == GapKind::edge_edge) {
-    const Shape::Edge& e = s.edges[side_a ? f.i : f.j];
+    const geometry::Shape::Edge& e = s.edges[side_a ? f.i : f.j];
     points = {s.corners[e.i], s.corners[e.j]};
     return 2;
   }
@@ -222,7 +224,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     if (p.sensor || !std::isfinite(p.least_gap)) continue;
     const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
     const Vec3 relative = x_a.head<3>() - x_b.head<3>();
-    const Shape &A = *p.data.a, &B = *p.data.b;
+    const geometry::Shape &A = *p.data.a, &B = *p.data.b;
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
     double speed = turning_speed(x_a.tail<3>(), a.Lambda_n1, A, p.data.pair, true);
     if (B.bounded()) {
@@ -296,7 +298,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
       kind == GapKind::part_end || is_of_rim(kind) ||
       (kind == GapKind::round_edge && is_tube(*p.data.b));
   const bool ring = has_part(kind) && is_tube(*p.data.a);
-  const Shape rim = ring ? part_of(*p.data.a, p.data.pair.i) : Shape{};
+  const geometry::Shape rim = ring ? part_of(*p.data.a, p.data.pair.i) : geometry::Shape{};
   std::array<Vec3, 2> ends;
   const bool single = !in_tube && few_points(*p.data.a, p.data.pair, true, ends) == 1;
   const PathSeenFromB path{a, b, x_a, x_b, single ? ends[0] : Vec3::Zero()};
@@ -323,7 +325,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
     const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
                            bool side_a) {
       if (theta.isZero(0.0)) return 0.0;
-      const Shape& shape = side_a ? *p.data.a : *p.data.b;
+      const geometry::Shape& shape = side_a ? *p.data.a : *p.data.b;
       const int count = few_points(shape, p.data.pair, side_a, few);
       if (count == 0 || hollow) return turning_speed(theta, Lambda, shape, p.data.pair, side_a);
       const Mat3 L = done > 0.0 ? Mat3(cay(done * theta) * Lambda) : Lambda;
@@ -356,7 +358,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
 double ContactSet::advance_over_surface(int point, std::span<const BodyStep> steps,
                                         std::span<const Vec6> increments, double most) {
   const Point& p = points_[point];
-  const Shape &A = *p.data.a, &B = *p.data.b;
+  const geometry::Shape &A = *p.data.a, &B = *p.data.b;
   const Vec6 still = Vec6::Zero();
   const auto increment = [&](int shape) -> const Vec6& {
     const int body = shapes_[shape].body;
@@ -365,7 +367,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
   const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
   const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
   const bool corner = p.data.pair.kind == GapKind::point_surface;
-  const Shape part = corner ? Shape{} : part_of(A, p.data.pair.i);
+  const geometry::Shape part = corner ? geometry::Shape{} : part_of(A, p.data.pair.i);
   const Vec3 Z = corner ? A.corners[p.data.pair.i] : part.centre;
   const double farthest = corner ? 0.0 : part.half.maxCoeff(), round = A.rounding + B.rounding;
   const double lever_a = corner ? Z.norm() : A.reach;
@@ -411,7 +413,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
   for (const int t : near) {
     const FeaturePair alone{corner ? GapKind::point_triangle : GapKind::part_triangle,
                             p.data.pair.i, t, Fade::none};
-    const Shape::Plane& plane = B.planes[t];
+    const geometry::Shape::Plane& plane = B.planes[t];
     const double side = plane.normal.dot(start.y) < plane.offset ? -1.0 : 1.0;
     const auto over_plane_of_it = [&](const Where& w) {
       double deep = 0.0;

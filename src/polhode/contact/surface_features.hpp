@@ -13,7 +13,7 @@ namespace polhode::contact {
 
 /// Gap below which features of a surface count together; it depends on the shapes alone, not on the
 /// law.
-[[nodiscard]] inline double surface_reach(const Shape& a, const Shape& b) {
+[[nodiscard]] inline double surface_reach(const geometry::Shape& a, const geometry::Shape& b) {
   return std::min(1e-3 * std::min(a.size, b.size), a.rounding + b.rounding);
 }
 
@@ -44,7 +44,8 @@ struct SurfaceSearch {
 /// @param search  Its triangles are those that may be near; receives the places.
 /// @param seen  triangle(t), edge(e), corner(k) → SurfacePlace.
 template <class Seen>
-void find_least_places(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
+void find_least_places(const geometry::Shape& b, SurfaceSearch& search, double reach,
+                       const Seen& seen) {
   std::vector<SurfacePlace>& list = search.places;
   list.clear();
   search.edges.clear();
@@ -93,7 +94,8 @@ void find_least_places(const Shape& b, SurfaceSearch& search, double reach, cons
 /// Places that count in one gap: in order of their gaps the multiplicities sum to at least one, as
 /// over a pit narrower than a ball. @eq{contact-one-gap}
 template <class Seen>
-void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
+void find_places_that_count(const geometry::Shape& b, SurfaceSearch& search, double reach,
+                            const Seen& seen) {
   find_least_places(b, search, reach, seen);
   std::vector<SurfacePlace>& list = search.places;
   int open = 0, places = 0;
@@ -106,7 +108,7 @@ void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach,
 }
 
 /// Appends the gap of a least place, unless the surface is seen from its inside there.
-void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const Shape& b,
+void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const geometry::Shape& b,
                       const Placement<double>& at_b, std::vector<Gap<double>>& gaps);
 
 /// One gap with the potential of all, β(g) = (reach − g)³ of each. @eq{contact-one-gap}

@@ -12,7 +12,7 @@ constexpr double kAside = 1e-7;
 
 /// A point as seen from a surface.
 struct SeenPoint {
-  const Shape& b;
+  const geometry::Shape& b;
   Vec3 y;
   double rho;
 
@@ -21,10 +21,11 @@ struct SeenPoint {
   }
   [[nodiscard]] SurfacePlace triangle(int t) const {
     const auto& c = b.triangles[t];
-    const TriangleRegion r =
-        nearest_on_triangle(y, b.corners[c[0]], b.corners[c[1]], b.corners[c[2]]);
-    if (r.kind == TriangleRegion::face) return place(0, t, r.nearest);
-    if (r.kind == TriangleRegion::edge) return place(1, b.triangle_edges[t][r.k], r.nearest);
+    const geometry::TriangleRegion r =
+        geometry::nearest_on_triangle(y, b.corners[c[0]], b.corners[c[1]], b.corners[c[2]]);
+    if (r.kind == geometry::TriangleRegion::face) return place(0, t, r.nearest);
+    if (r.kind == geometry::TriangleRegion::edge)
+      return place(1, b.triangle_edges[t][r.k], r.nearest);
     return place(2, c[r.k], r.nearest);
   }
   [[nodiscard]] SurfacePlace edge(int e) const {
@@ -39,10 +40,10 @@ struct SeenPoint {
 };
 
 template <class T>
-Gap<T> over_place(const V3<T>& x, double rho, const Shape& b, const SurfacePlace& place,
+Gap<T> over_place(const V3<T>& x, double rho, const geometry::Shape& b, const SurfacePlace& place,
                   const Placement<T>& at_b) {
   if (place.kind == 0) return over_triangle(x, rho, b, place.index, {}, at_b);
-  const Shape::Edge* edge = place.kind == 1 ? &b.edges[place.index] : nullptr;
+  const geometry::Shape::Edge* edge = place.kind == 1 ? &b.edges[place.index] : nullptr;
   const V3<T> first = at_b.point(b.corners[edge ? edge->i : place.index]);
   const V3<T> y =
       edge ? on_line(x, first, at_b.between(b.corners[edge->i], b.corners[edge->j])) : first;
@@ -52,12 +53,12 @@ Gap<T> over_place(const V3<T>& x, double rho, const Shape& b, const SurfacePlace
 }
 
 /// Point, slightly beside y, at which the features near y are determined; coordinates of b.
-Vec3 aside(const Vec3& y, const Shape& b) {
+Vec3 aside(const Vec3& y, const geometry::Shape& b) {
   return y + kAside * b.rounding * Vec3(0.618, -0.325, 0.716);
 }
 
 /// Triangles that a ball around the point y may reach.
-SurfaceSearch& triangles_near(const Vec3& y, double round, double reach, const Shape& b) {
+SurfaceSearch& triangles_near(const Vec3& y, double round, double reach, const geometry::Shape& b) {
   SurfaceSearch& search = SurfaceSearch::of_this_thread();
   search.triangles.clear();
   const double near = (reach + round) * (reach + round);
@@ -70,11 +71,12 @@ SurfaceSearch& triangles_near(const Vec3& y, double round, double reach, const S
 
 /// @eq{contact-one-gap}
 template <class T>
-Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
+Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const geometry::Shape& b,
                           const Placement<T>& at_b) {
   const double round = rho + b.rounding;
   const Vec3 y = aside(at_b.to_body(value(x)), b);
-  const TriangleTree::Hit hit = b.tree->nearest(y, std::numeric_limits<double>::infinity());
+  const geometry::TriangleTree::Hit hit =
+      b.tree->nearest(y, std::numeric_limits<double>::infinity());
   const auto nearest = [&] { return over_triangle(x, rho, b, hit.triangle, hit.region, at_b); };
   if (!(hit.distance - round < reach)) return nearest();
   SurfaceSearch& search = triangles_near(y, round, reach, b);
@@ -87,7 +89,7 @@ Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape&
   return sum.gap();
 }
 
-void point_gaps(const Vec3& x, double rho, double reach, const Shape& b,
+void point_gaps(const Vec3& x, double rho, double reach, const geometry::Shape& b,
                 const Placement<double>& at_b, std::vector<Gap<double>>& gaps) {
   const V3<double> at = constant<double>(x);
   const double round = rho + b.rounding;
@@ -98,7 +100,7 @@ void point_gaps(const Vec3& x, double rho, double reach, const Shape& b,
     add_from_outside(over_place(at, rho, b, p, at_b), p, b, at_b, gaps);
 }
 
-void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const Shape& b,
+void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const geometry::Shape& b,
                       const Placement<double>& at_b, std::vector<Gap<double>>& gaps) {
   if (place.count <= 0) return;
   if (place.kind < 2) {
@@ -108,11 +110,11 @@ void add_from_outside(const Gap<double>& g, const SurfacePlace& place, const Sha
   gaps.push_back(g);
 }
 
-template Gap<double> point_over_surface(const V3<double>&, double, double, const Shape&,
+template Gap<double> point_over_surface(const V3<double>&, double, double, const geometry::Shape&,
                                         const Placement<double>&);
-template Gap<Dual> point_over_surface(const V3<Dual>&, double, double, const Shape&,
+template Gap<Dual> point_over_surface(const V3<Dual>&, double, double, const geometry::Shape&,
                                       const Placement<Dual>&);
-template Gap<Fine> point_over_surface(const V3<Fine>&, double, double, const Shape&,
+template Gap<Fine> point_over_surface(const V3<Fine>&, double, double, const geometry::Shape&,
                                       const Placement<Fine>&);
 
 }  // namespace polhode::contact

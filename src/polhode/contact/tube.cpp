@@ -28,15 +28,16 @@ constexpr double kSetback = 2e-3;
 constexpr double kThin = 1e-6;
 
 /// Half the length between the outer rims [m].
-double half_between_rims(const Shape& tube) {
+double half_between_rims(const geometry::Shape& tube) {
   return tube.half[2] - std::min(kSetback * tube.half[0], 0.5 * tube.half[2]);
 }
 
 }  // namespace
 
-Shape tube(std::string_view where, double outer, double inner, double length,
-           const TriangleSurface& polygon, const ShapePlace& place, double rounding) {
-  Shape s = mesh(where, polygon, place, rounding);
+geometry::Shape tube(std::string_view where, double outer, double inner, double length,
+                     const geometry::TriangleSurface& polygon, const geometry::ShapePlace& place,
+                     double rounding) {
+  geometry::Shape s = geometry::mesh(where, polygon, place, rounding);
   const double R = 0.5 * outer - s.rounding, r = 0.5 * inner + s.rounding;
   s.half = {R, r, 0.5 * length - s.rounding};
   s.centre = place.origin;
@@ -63,10 +64,10 @@ Shape tube(std::string_view where, double outer, double inner, double length,
   return s;
 }
 
-Shape outer_rim(const Shape& tube, int which) {
+geometry::Shape outer_rim(const geometry::Shape& tube, int which) {
   const double radius = tube.half[0], height = half_between_rims(tube);
-  Shape rim;
-  rim.solid = Solid::round;
+  geometry::Shape rim;
+  rim.solid = geometry::Solid::round;
   rim.round_solid = &ring_solid();
   rim.rounding = tube.rounding;
   rim.axes = tube.axes;
@@ -75,9 +76,9 @@ Shape outer_rim(const Shape& tube, int which) {
   return rim;
 }
 
-Shape hull_of_tube(const Shape& tube) {
-  Shape hull;
-  hull.solid = Solid::round;
+geometry::Shape hull_of_tube(const geometry::Shape& tube) {
+  geometry::Shape hull;
+  hull.solid = geometry::Solid::round;
   hull.round_solid = &cylinder_solid();
   hull.rounding = tube.rounding;
   hull.axes = tube.axes;
@@ -95,8 +96,8 @@ constexpr double kNearAxis = 0.05;
 /// u < 1. @eq{contact-mouth-on-axis}
 /// @param side  Of the end along the axis: −1 or 1.
 template <class T>
-Gap<T> over_inner_rim(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b,
-                      const Meridian<T>& m, double side) {
+Gap<T> over_inner_rim(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                      const Placement<T>& at_b, const Meridian<T>& m, double side) {
   const double r = b.half[1];
   const T h = side * m.h - b.half[2], s = (kNearAxis * r) * (h / (h + r)), u = m.q / s;
   if (!(value(u) < 1.0))
@@ -118,7 +119,7 @@ Gap<T> over_inner_rim(const V3<T>& x, double rho_a, const Shape& b, const Placem
 
 /// Nearest point of a ring with a rectangular section: two round faces and two flat ones.
 template <class T>
-Gap<T> over_tube(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+Gap<T> over_tube(const V3<T>& x, double rho_a, const geometry::Shape& b, const Placement<T>& at_b) {
   const Meridian<T> m(x, b, at_b);
   const double R = b.half[0], r = b.half[1], H = b.half[2], h = value(m.h), q = value(m.q);
   const double side = h < 0.0 ? -1.0 : 1.0, beyond = std::abs(h) - H;
@@ -142,8 +143,11 @@ Gap<T> over_tube(const V3<T>& x, double rho_a, const Shape& b, const Placement<T
   return end();
 }
 
-template Gap<double> over_tube(const V3<double>&, double, const Shape&, const Placement<double>&);
-template Gap<Dual> over_tube(const V3<Dual>&, double, const Shape&, const Placement<Dual>&);
-template Gap<Fine> over_tube(const V3<Fine>&, double, const Shape&, const Placement<Fine>&);
+template Gap<double> over_tube(const V3<double>&, double, const geometry::Shape&,
+                               const Placement<double>&);
+template Gap<Dual> over_tube(const V3<Dual>&, double, const geometry::Shape&,
+                             const Placement<Dual>&);
+template Gap<Fine> over_tube(const V3<Fine>&, double, const geometry::Shape&,
+                             const Placement<Fine>&);
 
 }  // namespace polhode::contact

@@ -318,7 +318,7 @@ void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
                add_interaction(interaction, t, trial);
              });
   rows_off_ = 0.0;
-  for (const BlockCg::Row& row : rows_)
+  for (const linear::BlockCg::Row& row : rows_)
     if (!(std::abs(row.g) <= rows_off_)) rows_off_ = std::abs(row.g);
   acting_ = pointwise_->evaluate_pointwise(steps_, context, moves_);
   double noise = 0.0;  // rounding of positions times the stiffness of contacts

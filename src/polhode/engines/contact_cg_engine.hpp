@@ -67,7 +67,7 @@ class ContactCgEngine final : public NewtonEngine {
   PointwiseContacts* pointwise_;
   InteractionSweep loads_;
   double tolerance_, enough_ = 0.0;
-  BlockCg cg_;
+  linear::BlockCg cg_;
   bool slow_ = false;  ///< An increment of this step left a large part of the residual.
   /// Parts of a body's momentum rates and velocities at t_{n+1} that are determined by t_n.
   struct Inertia {
@@ -79,8 +79,8 @@ class ContactCgEngine final : public NewtonEngine {
   std::vector<Mat6> own_, blocks_;  ///< Of inertia alone; including loads, of bodies with loads.
   std::vector<int> acted_on_;       ///< Bodies with loads or joints, ascending.
   std::vector<int> coupled_;        ///< Those of them that are constrained or coupled to others.
-  std::vector<BlockCg::Tie> ties_;
-  std::vector<BlockCg::Row> rows_;
+  std::vector<linear::BlockCg::Tie> ties_;
+  std::vector<linear::BlockCg::Row> rows_;
   std::vector<int> row_number_;                    ///< Of each of rows_.
   std::vector<double> start_lambda_;               ///< Of each of rows_.
   double rows_off_ = 0.0, rows_off_before_ = 0.0;  ///< Largest |g| [m or -].

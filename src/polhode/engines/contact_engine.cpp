@@ -16,7 +16,7 @@ constexpr double kRoundOff = 1e-14;
 ContactEngine::ContactEngine(const System& system, const std::string& solver, MomentumRate form)
     : system_(&system),
       touching_(system),
-      solver_(make_linear_solver(solver)),
+      solver_(linear::make_linear_solver(solver)),
       newton_(system, form) {
   set_up();
 }

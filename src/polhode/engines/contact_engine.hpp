@@ -44,7 +44,7 @@ class ContactEngine final : public NewtonEngine {
 
   const System* system_;
   BodyContactAssembler touching_;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<linear::LinearSolver> solver_;
   NewtonSystem newton_;
   Vec x_, rhs_;
   bool factored_ = false;

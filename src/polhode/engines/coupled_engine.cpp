@@ -42,7 +42,7 @@ CoupledEngine::CoupledEngine(const System& system, const std::string& solver, Mo
       condensation_(system),
       nodes_(system),
       newton_(system, form),
-      solver_(make_linear_solver(solver)) {
+      solver_(linear::make_linear_solver(solver)) {
   if (system.contacts()) touching_.emplace(system);
   searches_ = touching_ || meshes_meet(system.nodes());
   set_up();
@@ -53,7 +53,7 @@ CoupledEngine::CoupledEngine(const System& system, const std::string& solver, Mo
 
 /// Sets up the matrix of bodies: interactions, then solids, then pairs that may be in contact.
 void CoupledEngine::set_up() {
-  std::vector<KktPair> more = condensation_.pairs();
+  std::vector<linear::KktPair> more = condensation_.pairs();
   if (touching_) more.insert(more.end(), touching_->pairs().begin(), touching_->pairs().end());
   newton_.couple(more);
   solver_->analyse(newton_.topology());
@@ -105,7 +105,7 @@ bool CoupledEngine::take_elements(const State& state, Trial& trial, bool factor,
 bool CoupledEngine::solve(const State& state, const Trial& trial) {
   for (int again = 0; again < kMaxPairChanges; ++again) {
     newton_.assemble(state, trial, true);
-    KktValues& values = newton_.values();
+    linear::KktValues& values = newton_.values();
     const auto couplings = newton_.cleared_couplings();
     const std::size_t cliques = condensation_.pairs().size();
     std::fill(shares_.begin(), shares_.end(), Vec6::Zero());

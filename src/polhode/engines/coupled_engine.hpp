@@ -77,7 +77,7 @@ class CoupledEngine final : public NewtonEngine {
   NewtonSystem newton_;
   std::optional<BodyContactAssembler> touching_;  ///< If bodies may be in contact.
   bool searches_ = false;                         ///< Line search on the merit.
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<linear::LinearSolver> solver_;
   std::vector<Vec6> shares_;
   std::vector<double> du_;
   Vec x_, rhs_;

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include <polhode/contact_laws/exit_speed.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/dynamics/mean_turn.hpp>
@@ -175,7 +176,7 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     p.arm_a = a.moves ? Vec3(at.place - a.r_n - 0.5 * a.u) : Vec3::Zero();
     p.arm_b = b.moves ? Vec3(at.place - b.r_n - 0.5 * b.u) : Vec3::Zero();
     const Vec3 w_a = a.Lambda_n * a.W_n, w_b = b.Lambda_n * b.W_n;
-    p.least = at.rate + least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
+    p.least = at.rate + contact::least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
     const bool held_back = k < static_cast<int>(held_back_.size()) && held_back_[k];
     p.wanted = Vec3::Zero();
     if (!held_back) p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;

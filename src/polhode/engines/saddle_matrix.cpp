@@ -14,7 +14,7 @@ constexpr double kNoise = 1e-12;
 
 }  // namespace
 
-SaddleMatrix::SaddleMatrix(const System& system, const KktTopology& topology)
+SaddleMatrix::SaddleMatrix(const System& system, const linear::KktTopology& topology)
     : system_(&system), topology_(topology), rows_(topology.rows) {
   const Nodes& nodes = system.nodes();
   movable_ = 6 * system.body_count() + nodes.unknowns();
@@ -60,7 +60,7 @@ bool SaddleMatrix::set_moving(const NodeBlocks& moving) {
 
 /// Calls put(row, column, value) for every entry, in an order that depends on the model alone.
 template <class Put>
-void SaddleMatrix::for_each(const KktValues* bodies, const std::vector<double>* blocks,
+void SaddleMatrix::for_each(const linear::KktValues* bodies, const std::vector<double>* blocks,
                             const double* forces, double s, Put&& put) const {
   const Nodes& nodes = system_->nodes();
   for (int b = 0; b < topology_.bodies; ++b)
@@ -68,8 +68,8 @@ void SaddleMatrix::for_each(const KktValues* bodies, const std::vector<double>* 
       for (int j = 0; j < 6; ++j)
         put(6 * b + i, 6 * b + j, bodies ? bodies->diagonal[b](i, j) : 0.0);
   for (std::size_t p = 0; p < topology_.pairs.size(); ++p) {
-    const KktPair& pair = topology_.pairs[p];
-    const KktValues::Pair* v = bodies ? &bodies->pairs[p] : nullptr;
+    const linear::KktPair& pair = topology_.pairs[p];
+    const linear::KktValues::Pair* v = bodies ? &bodies->pairs[p] : nullptr;
     if (pair.a != kGround && pair.b != kGround)
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) {
@@ -130,7 +130,7 @@ void SaddleMatrix::place(const Trial& trial) {
   }
 }
 
-void SaddleMatrix::set(const KktValues& bodies, const std::vector<double>& blocks,
+void SaddleMatrix::set(const linear::KktValues& bodies, const std::vector<double>& blocks,
                        const double* forces, double s) {
   std::size_t next = 0;
   for_each(&bodies, &blocks, forces, s, [&](int, int, double x) { values_[next++] = x; });

@@ -18,7 +18,7 @@ namespace polhode {
 /// entry.
 class SaddleMatrix {
  public:
-  SaddleMatrix(const System& system, const KktTopology& topology);
+  SaddleMatrix(const System& system, const linear::KktTopology& topology);
 
   [[nodiscard]] int size() const { return movable_ + rows_; }
   /// Number of unknowns before the multipliers.
@@ -50,7 +50,7 @@ class SaddleMatrix {
   /// @param bodies  Values and rows of bodies and joints, already scaled by s.
   /// @param blocks  3×3 blocks of the graph of nodes, row by row, then those outside it, or none.
   /// @param forces  Residual of the nodes [N], whose lever arms rotate; null: none.
-  void set(const KktValues& bodies, const std::vector<double>& blocks, const double* forces,
+  void set(const linear::KktValues& bodies, const std::vector<double>& blocks, const double* forces,
            double s);
   /// Adds stiffness against rotations of point masses, which have none of their own.
   void hold_point_masses(double stiffness);
@@ -81,11 +81,11 @@ class SaddleMatrix {
   };
   void find_entries();
   template <class Put>
-  void for_each(const KktValues* bodies, const std::vector<double>* blocks, const double* forces,
-                double s, Put&& put) const;
+  void for_each(const linear::KktValues* bodies, const std::vector<double>* blocks,
+                const double* forces, double s, Put&& put) const;
 
   const System* system_;
-  KktTopology topology_;
+  linear::KktTopology topology_;
   int movable_, rows_;
   NodeBlocks moving_;
   std::vector<Carrier> carrier_;  ///< By node.

@@ -35,10 +35,10 @@ class Scatter {
 bool SaddleSolver::factor(SaddleMatrix& matrix, bool symmetric,
                           const std::vector<double>& diagonal) {
   symmetric_ = symmetric;
-  std::optional<Mumps>& mumps = symmetric ? ldl_ : lu_;
+  std::optional<linear::Mumps>& mumps = symmetric ? ldl_ : lu_;
   const int n = matrix.movable();
   if (!mumps) {
-    mumps.emplace(symmetric ? Mumps::Symmetry::symmetric : Mumps::Symmetry::none);
+    mumps.emplace(symmetric ? linear::Mumps::Symmetry::symmetric : linear::Mumps::Symmetry::none);
     std::vector<int> rows = symmetric ? matrix.lower_row() : matrix.row();
     std::vector<int> columns = symmetric ? matrix.lower_column() : matrix.column();
     for (int i = 0; i < n; ++i) {

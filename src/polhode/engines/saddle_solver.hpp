@@ -26,7 +26,7 @@ class SaddleSolver {
   [[nodiscard]] bool symmetric() const { return symmetric_; }
 
  private:
-  std::optional<Mumps> lu_, ldl_;
+  std::optional<linear::Mumps> lu_, ldl_;
   bool symmetric_ = true;
   std::vector<double> values_;
 };

@@ -33,7 +33,7 @@ void apply_increments(const System& system, const State& state, Trial& trial, co
 }
 
 SparseEngine::SparseEngine(const System& system, const std::string& solver, MomentumRate form)
-    : newton_(system, form), solver_(make_linear_solver(solver)) {
+    : newton_(system, form), solver_(linear::make_linear_solver(solver)) {
   solver_->analyse(newton_.topology());
   x_ = Vec::Zero(newton_.right_hand_side().size());
 }

@@ -29,11 +29,11 @@ class SparseEngine final : public NewtonEngine {
 
   /// The system as last assembled: residuals by body and by row, for reports.
   [[nodiscard]] const NewtonSystem& assembled() const { return newton_; }
-  [[nodiscard]] const LinearSolver& solver() const { return *solver_; }
+  [[nodiscard]] const linear::LinearSolver& solver() const { return *solver_; }
 
  private:
   NewtonSystem newton_;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<linear::LinearSolver> solver_;
   Vec x_;
   bool factored_ = false;
   int worst_body_ = -1;

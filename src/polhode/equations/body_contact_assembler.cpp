@@ -78,15 +78,15 @@ void BodyContactAssembler::add_wrenches(double scale, Vec& rhs) const {
   }
 }
 
-void BodyContactAssembler::add_tangents(double scale, KktValues& values,
-                                        std::span<KktValues::Pair> pairs) const {
+void BodyContactAssembler::add_tangents(double scale, linear::KktValues& values,
+                                        std::span<linear::KktValues::Pair> pairs) const {
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     const auto& [a, b] = known_[k];
     const PairTerms& t = terms_[k];
     if (a != kGround) values.diagonal[a] -= scale * t.D_aa;
     if (b != kGround) values.diagonal[b] -= scale * t.D_bb;
     if (place_[k] < 0) continue;
-    KktValues::Pair& v = pairs[static_cast<std::size_t>(place_[k])];
+    linear::KktValues::Pair& v = pairs[static_cast<std::size_t>(place_[k])];
     v.K_ab = -scale * t.D_ab;
     v.K_ba = -scale * t.D_ba;
   }

@@ -17,7 +17,7 @@ class BodyContactAssembler {
 
   /// Pairs of two moving bodies, for NewtonSystem::couple(). They may change in begin_step() and in
   /// cover().
-  [[nodiscard]] const std::vector<KktPair>& pairs() const { return couplings_; }
+  [[nodiscard]] const std::vector<linear::KktPair>& pairs() const { return couplings_; }
   /// Updates the nearby pairs. @returns whether they are unchanged.
   bool begin_step(const State& state, const Trial& trial);
   /// Part of the predicted motion in which no shapes pass through each other; after begin_step().
@@ -32,7 +32,8 @@ class BodyContactAssembler {
   /// Adds the wrenches, times `scale`, to the bodies' right-hand side.
   void add_wrenches(double scale, Vec& rhs) const;
   /// Adds the tangents to the bodies' blocks and to those of pairs().
-  void add_tangents(double scale, KktValues& values, std::span<KktValues::Pair> pairs) const;
+  void add_tangents(double scale, linear::KktValues& values,
+                    std::span<linear::KktValues::Pair> pairs) const;
 
   /// Adds the wrench on the ground; the trial has converged.
   void end_step(const State& state, const Trial& trial);
@@ -50,7 +51,7 @@ class BodyContactAssembler {
   BodyContacts* contacts_;
   std::vector<Participants> known_;  ///< Pairs of the present couplings.
   std::vector<int> place_;  ///< By contact pair: its coupling, or −1 (one side is fixed).
-  std::vector<KktPair> couplings_;
+  std::vector<linear::KktPair> couplings_;
   std::vector<BodyStep> steps_, start_;  ///< By body, the ground last.
   std::vector<PairTerms> terms_;
   std::vector<Vec6> increments_;

@@ -93,16 +93,16 @@ NewtonSystem::NewtonSystem(const System& system, MomentumRate form)
   is_spring_.assign(system.rows(), false);
 }
 
-void NewtonSystem::couple(const std::vector<KktPair>& more) {
-  std::vector<KktPair>& pairs = map_.topology.pairs;
+void NewtonSystem::couple(const std::vector<linear::KktPair>& more) {
+  std::vector<linear::KktPair>& pairs = map_.topology.pairs;
   pairs.resize(own_pairs_);
   pairs.insert(pairs.end(), more.begin(), more.end());
   values_.pairs.resize(pairs.size());
 }
 
-std::span<KktValues::Pair> NewtonSystem::cleared_couplings() {
+std::span<linear::KktValues::Pair> NewtonSystem::cleared_couplings() {
   const auto couplings = std::span(values_.pairs).subspan(own_pairs_);
-  for (KktValues::Pair& v : couplings) {
+  for (linear::KktValues::Pair& v : couplings) {
     v.K_ab.setZero();
     v.K_ba.setZero();
   }
@@ -174,7 +174,7 @@ void NewtonSystem::add_pair(int interaction, const PairTerms& terms, const Trial
     rhs_[first + row] = -(row_residual_[row] + proximal);
   }
   if (!tangent) return;
-  KktValues::Pair& v = values_.pairs[pair];
+  linear::KktValues::Pair& v = values_.pairs[pair];
   v.K_ab = -s * terms.D_ab;
   v.K_ba = -s * terms.D_ba;
   v.B_a = terms.B_a;

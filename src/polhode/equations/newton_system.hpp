@@ -18,7 +18,7 @@ inline constexpr double kProximal = 1e-12;
 /// Block pattern of the linear system: a pair for each interaction that has multiplier rows or acts
 /// between two moving bodies.
 struct KktMap {
-  KktTopology topology;
+  linear::KktTopology topology;
   std::vector<int> pair;  ///< By interaction: its pair, or -1 (a load on one body).
 };
 [[nodiscard]] KktMap kkt_map(const System& system);
@@ -79,9 +79,9 @@ class NewtonSystem {
 
   /// Sets further coupled pairs of bodies: their blocks come last in values() and are filled by
   /// others. Replaces earlier ones.
-  void couple(const std::vector<KktPair>& more);
+  void couple(const std::vector<linear::KktPair>& more);
   /// Blocks of these pairs, set to zero.
-  [[nodiscard]] std::span<KktValues::Pair> cleared_couplings();
+  [[nodiscard]] std::span<linear::KktValues::Pair> cleared_couplings();
   /// Selects statics: bodies have no momentum rates.
   void set_static(bool yes) { static_ = yes; }
   /// Computes right_hand_side() and the residuals; with `tangent` the values as well.
@@ -89,10 +89,10 @@ class NewtonSystem {
   /// Evaluates only the constraint values at the iterate.
   [[nodiscard]] ConstraintCheck check(const State& state, const Trial& trial);
 
-  [[nodiscard]] const KktTopology& topology() const { return map_.topology; }
-  [[nodiscard]] const KktValues& values() const { return values_; }
+  [[nodiscard]] const linear::KktTopology& topology() const { return map_.topology; }
+  [[nodiscard]] const linear::KktValues& values() const { return values_; }
   /// Values, to which terms may be added after assemble().
-  [[nodiscard]] KktValues& values() { return values_; }
+  [[nodiscard]] linear::KktValues& values() { return values_; }
   /// Bodies (6 each, scaled by −s), then rows (negative).
   [[nodiscard]] const Vec& right_hand_side() const { return rhs_; }
 
@@ -118,7 +118,7 @@ class NewtonSystem {
   std::size_t own_pairs_ = 0;  ///< Of interactions, which come first.
   InteractionSweep sweep_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
-  KktValues values_;
+  linear::KktValues values_;
   Vec rhs_;
   std::vector<Vec6> body_residual_, body_scale_;
   std::vector<double> row_residual_;

@@ -326,7 +326,7 @@ void NodeCondensation::press(const std::vector<double>& F, double scale,
 
 void NodeCondensation::condense(const std::vector<double>& F, double scale,
                                 std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
-                                std::span<KktValues::Pair> pairs) {
+                                std::span<linear::KktValues::Pair> pairs) {
   const Nodes& nodes = system_->nodes();
   press(F, scale, residual);
   for (std::size_t p = 0; p < couplings_.size(); ++p) {
@@ -340,7 +340,7 @@ void NodeCondensation::condense(const std::vector<double>& F, double scale,
       };
       diagonal[bodies[i]] += block(i, i);
       for (std::size_t j = i + 1; j < bodies.size(); ++j, ++pair) {
-        KktValues::Pair& v = pairs[pair_of_[p][pair]];
+        linear::KktValues::Pair& v = pairs[pair_of_[p][pair]];
         v.K_ab += block(i, j);
         v.K_ba += block(j, i);
       }
@@ -349,7 +349,7 @@ void NodeCondensation::condense(const std::vector<double>& F, double scale,
   for (std::size_t b = 0; b < meeting_diagonal_.size(); ++b)
     diagonal[b] += scale * meeting_diagonal_[b];
   for (std::size_t k = 0; k < meeting_blocks_.size(); ++k) {
-    KktValues::Pair& v = pairs[piece_pairs_ + k];
+    linear::KktValues::Pair& v = pairs[piece_pairs_ + k];
     v.K_ab += scale * meeting_blocks_[k][0];
     v.K_ba += scale * meeting_blocks_[k][1];
   }

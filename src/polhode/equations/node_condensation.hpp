@@ -34,7 +34,7 @@ class NodeCondensation {
   /// Pairs of bodies coupled by connected components, then those coupled by contact alone, for the
   /// topology of the bodies' linear system. The latter may change in factor(), which meetings()
   /// shows.
-  [[nodiscard]] const std::vector<KktPair>& pairs() const { return pairs_; }
+  [[nodiscard]] const std::vector<linear::KktPair>& pairs() const { return pairs_; }
   [[nodiscard]] int meetings() const { return meetings_; }  ///< Number of their changes.
   struct FactorOptions {
     bool arms_turn = true;  ///< Include the tangent of rotating lever arms: not for masses.
@@ -57,13 +57,13 @@ class NodeCondensation {
   /// Adds the condensed terms to the bodies, after factor() or turns(): P̄ᵀF − A_bf A_ff⁻¹ F_f to
   /// the residuals by body, and S to the diagonal and to the pairs' blocks, all times `scale`.
   void condense(const std::vector<double>& F, double scale, std::vector<Vec6>& residual,
-                std::vector<Mat6>& diagonal, std::span<KktValues::Pair> pairs);
+                std::vector<Mat6>& diagonal, std::span<linear::KktValues::Pair> pairs);
   /// Adds only the condensed residual, P̄ᵀF − A_bf A_ff⁻¹ F_f. expand() uses the forces given last.
   void press(const std::vector<double>& F, double scale, std::vector<Vec6>& residual);
   /// Increments of all nodes (3 each) from those of the bodies (6 each).
   void expand(const double* bodies, std::vector<double>& du) const;
 
-  [[nodiscard]] const Mumps& factorisation() const { return mumps_; }
+  [[nodiscard]] const linear::Mumps& factorisation() const { return mumps_; }
 
  private:
   struct Bond {
@@ -88,7 +88,7 @@ class NodeCondensation {
   [[nodiscard]] int place_in(int piece, int body) const;
 
   const System* system_;
-  Mumps mumps_;
+  linear::Mumps mumps_;
   bool factored_ = false;
   std::vector<int> source_;  ///< Positions of the entries of A_ff in the nodes' tangent.
   std::vector<double> values_;
@@ -96,7 +96,7 @@ class NodeCondensation {
   std::vector<Bond> bonds_;
   std::vector<std::vector<Coupling>> couplings_;      ///< By connected component.
   std::map<std::pair<int, int>, std::size_t> known_;  ///< Free node and body: their coupling.
-  std::vector<KktPair> pairs_;
+  std::vector<linear::KktPair> pairs_;
   std::size_t piece_pairs_ = 0;  ///< Number of pairs coupled by components, which come first.
   int meetings_ = 0;
   std::map<std::pair<int, int>, std::size_t> meeting_;  ///< By two bodies.

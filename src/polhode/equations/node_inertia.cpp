@@ -77,7 +77,7 @@ bool NodeInertia::condense() {
 }
 
 void NodeInertia::put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
-                      std::span<KktValues::Pair> pairs) {
+                      std::span<linear::KktValues::Pair> pairs) {
   std::vector<Vec6> share(force.size(), Vec6::Zero());
   condensation_.condense(residual_, scale, share, diagonal, pairs);
   for (std::size_t b = 0; b < force.size(); ++b) force[b] -= share[b];

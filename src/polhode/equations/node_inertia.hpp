@@ -15,7 +15,7 @@ class NodeInertia {
  public:
   explicit NodeInertia(const System& system);
 
-  [[nodiscard]] const std::vector<KktPair>& pairs() const { return condensation_.pairs(); }
+  [[nodiscard]] const std::vector<linear::KktPair>& pairs() const { return condensation_.pairs(); }
   /// Assembles an instant. @returns false if the solids' mass matrix is singular.
   [[nodiscard]] bool take(const State& state);
   /// Assembles masses only, without forces and rotation: for impulses instead of forces, and jumps
@@ -24,7 +24,7 @@ class NodeInertia {
   [[nodiscard]] bool take_masses(const State& state, std::span<const double> given = {});
   /// Adds the condensed mass and, to `force` by body, the forces of the nodes, all times `scale`.
   void put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
-           std::span<KktValues::Pair> pairs);
+           std::span<linear::KktValues::Pair> pairs);
   /// Sets impulses on free nodes (3 each, zero on others), after take_masses() and put(); their
   /// share on the bodies is added to `force` by body, times `scale`. accelerations() are then the
   /// jumps.

@@ -5,7 +5,7 @@
 
 #include <polhode/geometry/broad_phase.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 namespace {
 
@@ -161,4 +161,4 @@ void BroadPhase::find(std::span<const Bounds> boxes, std::vector<std::pair<int, 
   }
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

@@ -7,7 +7,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// An axis-parallel box in the world.
 struct Bounds {
@@ -46,4 +46,4 @@ class BroadPhase {
   std::vector<int> cell_of_, hits_;
 };
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

@@ -7,7 +7,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/hull.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 namespace {
 
@@ -100,4 +100,4 @@ TriangleSurface convex_hull(std::string_view where, std::span<const Vec3> points
   return hull;
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

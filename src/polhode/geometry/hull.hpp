@@ -6,7 +6,7 @@
 
 #include <polhode/geometry/triangle_surface.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// Convex hull of points, as outward triangles whose corners are some of the points.
 ///
@@ -17,4 +17,4 @@ namespace polhode::contact {
 /// @throws InputError if the points lie in a plane, on a line or in one place, or are not finite.
 [[nodiscard]] TriangleSurface convex_hull(std::string_view where, std::span<const Vec3> points);
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

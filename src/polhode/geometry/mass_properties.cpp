@@ -9,7 +9,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/mass_properties.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 namespace {
 
 /// Relative excess of J₃ over J₁ + J₂ that is accepted as rounding of printed numbers.
@@ -101,4 +101,4 @@ MassProperties composed(std::span<const MassProperties> parts) {
   return sum;
 }
 
-}  // namespace polhode
+}  // namespace polhode::geometry

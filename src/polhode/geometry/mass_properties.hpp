@@ -6,7 +6,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 
 /// Mass, centre of mass and inertia of a rigid body.
 ///
@@ -51,4 +51,4 @@ void check_mass_properties(std::string_view where, double mass, const Mat3& iner
 /// part of negative mass is a hole; the sum is not checked here.
 [[nodiscard]] MassProperties composed(std::span<const MassProperties> parts);
 
-}  // namespace polhode
+}  // namespace polhode::geometry

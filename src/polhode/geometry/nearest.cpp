@@ -5,7 +5,7 @@
 
 #include <polhode/geometry/nearest.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 namespace {
 
@@ -116,4 +116,4 @@ double nearest_on_ellipsoid(const Vec3& half, const Vec3& y) {
   return t;
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

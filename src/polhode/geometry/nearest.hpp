@@ -3,7 +3,7 @@
 
 #include <polhode/geometry/shape.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// Part of a triangle nearest to a point: its face, edge k from corner k to k + 1, or corner k.
 struct TriangleRegion {
@@ -35,4 +35,4 @@ struct SegmentsRegion {
 /// aᵢ² yᵢ/(aᵢ² + t); negative inside.
 [[nodiscard]] double nearest_on_ellipsoid(const Vec3& half, const Vec3& y);
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

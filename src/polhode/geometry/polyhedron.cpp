@@ -8,7 +8,7 @@
 
 #include <polhode/geometry/polyhedron.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 namespace {
 
@@ -127,4 +127,4 @@ double median_edge(const TriangleSurface& surface) {
   return *middle;
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

@@ -3,7 +3,7 @@
 
 #include <polhode/geometry/shape.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// Surface with every triangle moved inward by `depth`, as nearly as its corners allow: each corner
 /// gets the shortest displacement that moves the planes of its triangles in the least-squares
@@ -22,4 +22,4 @@ void take_convex_corners(Shape& shape);
 
 [[nodiscard]] double median_edge(const TriangleSurface& surface);  ///< [m]
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

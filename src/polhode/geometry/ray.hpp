@@ -3,7 +3,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// Crossing of a triangle by a ray from the origin, corners counterclockwise seen from outside: 1
 /// on its way out, −1 on its way in, 0 for none. Over a closed surface the sum is the winding
@@ -19,4 +19,4 @@ namespace polhode::contact {
 /// Generic direction, not aligned with typical model geometry; all its coordinates are positive.
 inline const Vec3 kAnyRay(0.3127, 0.5471, 0.7766);
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

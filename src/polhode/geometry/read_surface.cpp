@@ -17,7 +17,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/read_surface.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 namespace {
 
 constexpr const char* kExportAgain = "Export the file again from the program that made it";
@@ -273,4 +273,4 @@ TriangleSurface read_surface(const std::string& path) {
   return parse_surface(path, bytes);
 }
 
-}  // namespace polhode
+}  // namespace polhode::geometry

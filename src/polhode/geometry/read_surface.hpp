@@ -6,7 +6,7 @@
 
 #include <polhode/geometry/triangle_surface.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 
 /// Reads a triangle surface; the format follows from the file name: .stl (text or binary) or .obj.
 ///
@@ -21,4 +21,4 @@ namespace polhode {
 /// @param name  First part of messages; its ending chooses the format.
 [[nodiscard]] TriangleSurface parse_surface(const std::string& name, std::string_view bytes);
 
-}  // namespace polhode
+}  // namespace polhode::geometry

@@ -13,7 +13,7 @@
 #include <polhode/geometry/shape_checks.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 namespace {
 
@@ -258,4 +258,4 @@ Shape height_field(std::string_view where, int columns, double spacing,
   return s;
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

@@ -10,9 +10,12 @@
 #include <polhode/geometry/triangle_surface.hpp>
 
 namespace polhode::contact {
+struct RoundSolid;
+}
+
+namespace polhode::geometry {
 
 class TriangleTree;
-struct RoundSolid;
 
 /// Kinds of the solid of a shape for a nearby point.
 enum class Solid {
@@ -68,9 +71,9 @@ struct Shape {
   std::vector<Plane> planes;                       ///< Of polyhedron, by triangle.
   std::shared_ptr<const TriangleTree> tree;        ///< Of a surface.
 
-  const RoundSolid* round_solid = nullptr;  ///< Formulas of Solid::round.
-  std::vector<FlatEnd> flat_ends;           ///< Of a round solid or tube; an ellipsoid has none.
-  int rim_corners = 0;  ///< Number of corners, the first ones, on rims of a round solid.
+  const contact::RoundSolid* round_solid = nullptr;  ///< Formulas of Solid::round.
+  std::vector<FlatEnd> flat_ends;  ///< Of a round solid or tube; an ellipsoid has none.
+  int rim_corners = 0;             ///< Number of corners, the first ones, on rims of a round solid.
 
   Vec3 centre = Vec3::Zero();        ///< Of sphere, round solid (mid height), tube ...
   Mat3 axes = Mat3::Identity();      ///< Columns; round solids lie along the third.
@@ -110,4 +113,4 @@ struct Shape {
                                  std::span<const double> heights, const ShapePlace& place = {},
                                  double rounding = 0.0);
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

@@ -6,7 +6,7 @@
 
 #include <polhode/geometry/shape.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// Default radius of edges, as a part of the size.
 inline constexpr double kRounding = 1e-3;
@@ -21,4 +21,4 @@ void check_rounding(std::string_view where, double rounding, double most);
 /// Stores the bounding ball of a shape, and what follows from it.
 void set_bounds(Shape& s, const Vec3& centre, double radius);
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

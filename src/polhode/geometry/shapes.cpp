@@ -8,7 +8,7 @@
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/geometry/surface_of_revolution.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 namespace {
 
 using Sizes = std::span<const double>;
@@ -227,4 +227,4 @@ TriangleSurface shape_surface(const ShapeKind& kind, Sizes sizes, int segments) 
   return kind.surface(sizes, std::max(segments, 3));
 }
 
-}  // namespace polhode
+}  // namespace polhode::geometry

@@ -9,7 +9,7 @@
 #include <polhode/geometry/mass_properties.hpp>
 #include <polhode/geometry/triangle_surface.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 
 /// A size of a shape in the model file.
 struct ShapeSize {
@@ -57,4 +57,4 @@ void check_shape_sizes(std::string_view where, const ShapeKind& kind,
 [[nodiscard]] TriangleSurface shape_surface(const ShapeKind& kind, std::span<const double> sizes,
                                             int segments = 32);
 
-}  // namespace polhode
+}  // namespace polhode::geometry

@@ -6,7 +6,7 @@
 
 #include <polhode/geometry/surface_of_revolution.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 namespace {
 
 /// Adds the circle of a profile point and returns its corners; a point on the axis is one corner.
@@ -73,4 +73,4 @@ TriangleSurface ring_of_revolution(const Profile& profile, int segments) {
   return surface;
 }
 
-}  // namespace polhode
+}  // namespace polhode::geometry

@@ -5,7 +5,7 @@
 
 #include <polhode/geometry/triangle_surface.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 
 /// A corner of a profile that is rotated about z.
 struct ProfilePoint {
@@ -25,4 +25,4 @@ using Profile = std::vector<ProfilePoint>;
 /// Surface swept by a closed profile that stays off the axis, counterclockwise in the (r, z) plane.
 [[nodiscard]] TriangleSurface ring_of_revolution(const Profile& profile, int segments);
 
-}  // namespace polhode
+}  // namespace polhode::geometry

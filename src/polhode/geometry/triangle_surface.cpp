@@ -8,7 +8,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/triangle_surface.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 namespace {
 
 /// One side of a triangle, named by its lower and higher corner.
@@ -191,4 +191,4 @@ void join_equal_points(TriangleSurface& surface) {
   surface.points = std::move(points);
 }
 
-}  // namespace polhode
+}  // namespace polhode::geometry

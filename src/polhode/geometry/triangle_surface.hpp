@@ -8,7 +8,7 @@
 
 #include <polhode/geometry/mass_properties.hpp>
 
-namespace polhode {
+namespace polhode::geometry {
 
 /// A surface of triangles. Seen from outside, the corners of a triangle are counterclockwise.
 struct TriangleSurface {
@@ -56,4 +56,4 @@ bool orient_outward(TriangleSurface& surface);
 /// Merges corners with equal coordinates and drops triangles that collapse thereby.
 void join_equal_points(TriangleSurface& surface);
 
-}  // namespace polhode
+}  // namespace polhode::geometry

@@ -6,7 +6,7 @@
 #include <polhode/geometry/ray.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 namespace {
 
@@ -114,4 +114,4 @@ int TriangleTree::winding(const Vec3& x) const {
   return around;
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

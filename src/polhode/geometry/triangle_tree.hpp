@@ -7,7 +7,7 @@
 
 #include <polhode/geometry/nearest.hpp>
 
-namespace polhode::contact {
+namespace polhode::geometry {
 
 /// Bounding volume hierarchy of triangles: a search for triangles near a point. The results depend
 /// on the triangles alone.
@@ -76,4 +76,4 @@ void TriangleTree::visit(Meets&& meets, Use&& use) const {
   }
 }
 
-}  // namespace polhode::contact
+}  // namespace polhode::geometry

@@ -6,7 +6,7 @@
 
 #include <polhode/linear/block_cg_blocks.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -47,9 +47,9 @@ bool BlockCg::invert(const Block& block, Block& inverse) {
       B(i, j) = block.column[j].turned[i];
       D(i, j) = block.column[3 + j].turned[i];
     }
-  if (!polhode::invert(A, inverse_A)) return false;
+  if (!linear::invert(A, inverse_A)) return false;
   const Mat3 X = B * inverse_A;
-  if (!polhode::invert(D - X * B.transpose(), inverse_S)) return false;
+  if (!linear::invert(D - X * B.transpose(), inverse_S)) return false;
   const Mat3 Y = inverse_S * X;
   inverse_A += X.transpose() * Y;
   const auto four = [](double x, double y, double z) {
@@ -428,4 +428,4 @@ int BlockCg::iterate_with_friction(double part, int most, int directions) {
   return iterations;
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

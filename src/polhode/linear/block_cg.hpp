@@ -7,7 +7,7 @@
 
 #include <polhode/system/contact_springs.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// Conjugate gradient solver for bodies coupled only by springs between points: a symmetric
 /// positive definite matrix of one 6×6 block per body and one spring per contact, never assembled.
@@ -148,4 +148,4 @@ class BlockCg {
   Vectors x_, r_, z_, p_, y_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::linear

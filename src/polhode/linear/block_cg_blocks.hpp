@@ -3,7 +3,7 @@
 
 #include <polhode/linear/block_cg.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 inline BlockCg::Four BlockCg::cross(Four a, Four b) {
   const Four turned =
@@ -27,4 +27,4 @@ inline double BlockCg::dot(const Pair& x, const Pair& y) {
          (static_cast<double>(s[2]) + static_cast<double>(s[3]));
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -6,7 +6,7 @@
 
 #include <polhode/linear/block_cg_blocks.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -191,4 +191,4 @@ BlockCg::Vectors BlockCg::fulfil_rows(double size, Vectors& b) {
   return asked;
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

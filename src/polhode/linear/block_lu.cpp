@@ -5,7 +5,7 @@
 #include <polhode/linear/block_lu_kernels.hpp>
 #include <polhode/linear/block_lu_order.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -178,4 +178,4 @@ void BlockLu::solve_transposed(Vec& x) const {
     x[static_cast<Eigen::Index>(i)] = work_[padded_of_unknown_[i]];
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -7,7 +7,7 @@
 
 #include <polhode/linear/kkt.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// Pattern of the dense blocks of the factors, and the list of block operations. Nodes are numbered
 /// in the order of elimination.
@@ -71,4 +71,4 @@ class BlockLu final : public LinearSolver {
   bool fused_ = false;  ///< By AVX2 and fused multiply-add.
 };
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -12,7 +12,7 @@
 #define POLHODE_FUSED __attribute__((target("avx2,fma")))
 #endif
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -288,4 +288,4 @@ void solve_blocks_transposed(const BlockPlan& plan, const double* values, const 
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

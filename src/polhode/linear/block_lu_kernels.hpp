@@ -3,7 +3,7 @@
 
 #include <polhode/linear/block_lu.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// Whether the processor supports the fused kernels below (AVX2 and FMA).
 [[nodiscard]] bool has_fused_kernels();
@@ -17,4 +17,4 @@ void solve_blocks(const BlockPlan& plan, const double* values, const int* pivots
 void solve_blocks_transposed(const BlockPlan& plan, const double* values, const int* pivots,
                              double* x);
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -7,7 +7,7 @@
 
 #include <polhode/linear/block_lu_order.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -148,4 +148,4 @@ EliminationOrder eliminate_least_degree_first(NodeGraph graph) {
   return result;
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -5,7 +5,7 @@
 
 #include <polhode/linear/kkt.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// Unknowns gathered into nodes before elimination.
 struct NodeGraph {
@@ -29,4 +29,4 @@ struct EliminationOrder {
 /// Minimum-degree order (degree counts unknowns), with waiting nodes deferred.
 [[nodiscard]] EliminationOrder eliminate_least_degree_first(NodeGraph graph);
 
-}  // namespace polhode
+}  // namespace polhode::linear

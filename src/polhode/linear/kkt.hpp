@@ -7,7 +7,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// One coupling of the linear system: an interaction between a and b (kGround: that side is
 /// absent) with `rows` multiplier rows, the first of which is row `first_row`.
@@ -61,4 +61,4 @@ class LinearSolver {
 /// Solver "block_lu", "klu" or "sparse_lu". @throws InputError for any other name.
 [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name);
 
-}  // namespace polhode
+}  // namespace polhode::linear

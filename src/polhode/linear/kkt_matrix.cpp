@@ -5,7 +5,7 @@
 
 #include <polhode/linear/kkt_matrix.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 template <class Put>
 void KktMatrix::for_each(const KktValues* values, Put&& put) const {
@@ -81,4 +81,4 @@ Mat KktMatrix::dense() const {
   return A;
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

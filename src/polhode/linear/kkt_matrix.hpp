@@ -5,7 +5,7 @@
 
 #include <polhode/linear/kkt.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// The linear system as one compressed-column matrix, for general sparse solvers, for the rank
 /// report and for tests. The pattern is built once; values may be replaced any number of times.
@@ -36,4 +36,4 @@ class KktMatrix {
   std::vector<double> values_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -6,7 +6,7 @@
 #include <polhode/linear/kkt_matrix.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -92,4 +92,4 @@ void KluSolver::solve_transposed(Vec& x) const {
 
 std::unique_ptr<LinearSolver> make_klu_solver() { return std::make_unique<KluSolver>(); }
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -5,7 +5,7 @@
 #include <polhode/linear/kkt.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name) {
   if (name == "block_lu") return std::make_unique<BlockLu>();
@@ -15,4 +15,4 @@ std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name) {
                    "Use one of: block_lu, klu, sparse_lu");
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

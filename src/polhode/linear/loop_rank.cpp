@@ -8,7 +8,7 @@
 #include <queue>
 #include <utility>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -190,4 +190,4 @@ LoopRank loop_rank(const std::vector<BodyRows>& rows, int bodies, double toleran
   return Elimination(rows, bodies, tolerance).run();
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -5,7 +5,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// Rows of a matrix whose columns belong to bodies, six each.
 struct BodyRows {
@@ -35,4 +35,4 @@ struct LoopRank {
 /// @param tolerance  Smaller pivots are zero [-].
 [[nodiscard]] LoopRank loop_rank(const std::vector<BodyRows>& rows, int bodies, double tolerance);
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -9,7 +9,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/linear/mumps.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::vector<int> Mumps::null_pivots() const {
   return list;
 }
 
-}  // namespace polhode
+}  // namespace polhode::linear

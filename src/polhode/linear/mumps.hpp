@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// MUMPS (Amestoy, Duff, L'Excellent, Koster 2001), sequential: multifrontal factorisation of the
 /// sparse matrices of solids. The library is loaded with the first object, so that models without
@@ -42,4 +42,4 @@ class Mumps {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::linear

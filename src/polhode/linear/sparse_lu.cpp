@@ -5,7 +5,7 @@
 #include <polhode/linear/kkt_matrix.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 namespace {
 
@@ -65,4 +65,4 @@ void SparseLu::solve_transposed(Vec& x) const {
 
 std::unique_ptr<LinearSolver> make_sparse_lu() { return std::make_unique<SparseLu>(); }
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -5,7 +5,7 @@
 
 #include <polhode/linear/kkt.hpp>
 
-namespace polhode {
+namespace polhode::linear {
 
 /// SuiteSparse KLU: a general sparse LU with a single symbolic analysis. Pivots are reused from one
 /// factorisation to the next as long as the factors do not grow.
@@ -16,4 +16,4 @@ namespace polhode {
 /// first factorisation.
 [[nodiscard]] std::unique_ptr<LinearSolver> make_sparse_lu();
 
-}  // namespace polhode
+}  // namespace polhode::linear

@@ -114,9 +114,9 @@ struct LoadSpec {
       vector;             ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
   TimeFunctionPtr value;  ///< Pressure [Pa], or the function of a motor.
   int solid = -1;         ///< Of a load on a solid: index into Model::solids.
-  std::vector<Selection> selection;  ///< Its nodes or faces; empty: all.
-  bool follower = false;             ///< A pressure that follows the surface and its present area.
-  std::string keeps = "momentum";    ///< Of a follower pressure: whether momentum or work is exact.
+  std::vector<solids::Selection> selection;  ///< Its nodes or faces; empty: all.
+  bool follower = false;           ///< A pressure that follows the surface and its present area.
+  std::string keeps = "momentum";  ///< Of a follower pressure: whether momentum or work is exact.
   std::map<std::string, double>
       parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
   /// Laws of a coordinate or a rate by key, SI: functions of that instead of time.

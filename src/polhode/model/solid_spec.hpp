@@ -36,14 +36,14 @@ struct MeshSpec {
 struct BondSpec {
   int body = kGround;  ///< Index into Model::bodies, or kGround.
   SourceLocation place;
-  std::vector<Selection> nodes;
+  std::vector<solids::Selection> nodes;
 };
 
 /// Nodes with a displacement from the start given as a function of time.
 struct PrescribedSpec {
   std::string name;
   SourceLocation place;
-  std::vector<Selection> nodes;
+  std::vector<solids::Selection> nodes;
   TimeVector displacement;  ///< World components [m]; null: this component is free.
 };
 
@@ -58,9 +58,9 @@ struct SolidSpec {
   std::optional<double> density;      ///< Instead of the material's [kg/m^3].
   std::vector<BondSpec> bonded;
   std::vector<PrescribedSpec> prescribed;
-  ContactSideSpec contact;                 ///< Contact settings of its surface.
-  std::vector<Selection> contact_surface;  ///< Contact faces; empty: the whole boundary.
-  bool self_contact = false;               ///< Its surface has self-contact.
+  ContactSideSpec contact;                         ///< Contact settings of its surface.
+  std::vector<solids::Selection> contact_surface;  ///< Contact faces; empty: the whole boundary.
+  bool self_contact = false;                       ///< Its surface has self-contact.
   std::optional<Vec3> velocity;  ///< Of the centre of mass, world [m/s]; absent: see below.
   /// World [rad/s]. Without velocity and angular_velocity a solid initially moves rigidly with the
   /// first body it is bonded to, or is at rest.

@@ -115,7 +115,7 @@ std::vector<std::vector<int>> clusters(const System& system, const std::vector<R
 
 /// Rows of a connected component over its own bodies, and the interaction of each.
 struct ClusterRows {
-  std::vector<BodyRows> blocks;
+  std::vector<linear::BodyRows> blocks;
   std::vector<int> interaction;
   int bodies = 0;
 };
@@ -125,7 +125,7 @@ ClusterRows rows_of(const std::vector<Rows>& rows, const std::vector<int>& clust
   std::map<int, int> place;
   for (const int k : cluster) {
     const Rows& r = rows[static_cast<std::size_t>(k)];
-    BodyRows block{{}, Mat(r.G.rows(), 0)};
+    linear::BodyRows block{{}, Mat(r.G.rows(), 0)};
     for (const auto& [body, part] :
          {std::pair<int, Mat>(r.a, r.G.leftCols<6>()), {r.b, r.G.rightCols<6>()}}) {
       if (body == kGround) continue;
@@ -159,7 +159,7 @@ RankReport rank_report(const System& system, const State& state, double toleranc
   std::set<int> involved;
   for (const std::vector<int>& cluster : clusters(system, rows)) {
     const ClusterRows own = rows_of(rows, cluster);
-    const LoopRank found = loop_rank(own.blocks, own.bodies, tolerance);
+    const linear::LoopRank found = linear::loop_rank(own.blocks, own.bodies, tolerance);
     report.rank += found.rank;
     for (std::size_t j = 0; j < found.dependent.size(); ++j)
       if (found.dependent[j]) involved.insert(own.interaction[j]);

@@ -160,13 +160,13 @@ class WholeTangent {
         return;
       }
     }
-    std::vector<KktPair> more;
+    std::vector<linear::KktPair> more;
     if (nodes_) more = condensation_->pairs();
     if (touching_) more.insert(more.end(), touching_->pairs().begin(), touching_->pairs().end());
     newton_.couple(more);
     newton_.assemble(state_, trial_, true);
     const auto couplings = newton_.cleared_couplings();
-    KktValues& values = newton_.values();
+    linear::KktValues& values = newton_.values();
     std::size_t cliques = 0;
     if (nodes_) {
       cliques = condensation_->pairs().size();
@@ -178,7 +178,7 @@ class WholeTangent {
       touching_->evaluate(state_, trial_, true);
       touching_->add_tangents(s, values, couplings.subspan(cliques));
     }
-    matrix_ = KktMatrix(newton_.topology());
+    matrix_ = linear::KktMatrix(newton_.topology());
     matrix_.set(values);
     columns_.emplace(measure_rows());
   }
@@ -312,7 +312,7 @@ class WholeTangent {
   std::optional<NodeCondensation> condensation_;
   std::optional<BodyContactAssembler> touching_;
   std::vector<Mat3> still_;  ///< By connected component: identity, no rotation.
-  KktMatrix matrix_;
+  linear::KktMatrix matrix_;
   std::optional<TangentColumns> columns_;
   std::string fault_;
 };

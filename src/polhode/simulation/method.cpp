@@ -95,7 +95,8 @@ bool has_surfaces(const System& system) {
 bool has_touching_cables(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g) {
     const std::string kind = system.nodes().group(g).kind();
-    if (kind == kCableContact || kind == EdgeContact::kCablesKind) return true;
+    if (kind == surface_contact::kCableContact || kind == surface_contact::EdgeContact::kCablesKind)
+      return true;
   }
   return false;
 }

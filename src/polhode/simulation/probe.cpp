@@ -19,13 +19,13 @@ void extend(std::vector<double>& list, const Vec3& x) {
 
 void add_stress(std::vector<double>& row, const Mat3& stress) {
   row.insert(row.end(), {stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2),
-                         stress(0, 2), von_mises(stress)});
+                         stress(0, 2), solids::von_mises(stress)});
 }
 
 ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spec,
                               const std::string& where) {
   ProbeTarget target{.spec = spec, .index = simulation.model().solid_index(spec.target)};
-  const Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
+  const solids::Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
   if (!spec.reaction_of.empty()) {
     const std::vector<std::string> names = simulation.interfaces(target.index);
     const auto found = std::find(names.begin(), names.end(), spec.reaction_of);

@@ -30,12 +30,14 @@ struct State;
 struct SolidMap;
 struct SolidPoint;
 struct ContactMap;
-struct SurfacePointReport;
 struct ProbeTarget;
 namespace contact {
 class ContactSet;
 struct TouchingPoint;
 }  // namespace contact
+namespace surface_contact {
+struct SurfacePointReport;
+}
 
 /// Reasons for the end of a run.
 enum class RunEnd { finished, not_converged, interrupted, limit };
@@ -208,7 +210,7 @@ class Simulation {
   /// Contact points of bodies with force in the last step; shapes as in contact_map().body.
   [[nodiscard]] const std::vector<contact::TouchingPoint>& contact_points() const;
   /// Contact points of contact_map().surfaces[surface].
-  [[nodiscard]] std::vector<SurfacePointReport> surface_points(int surface) const;
+  [[nodiscard]] std::vector<surface_contact::SurfacePointReport> surface_points(int surface) const;
   /// Sensor events since the start or restart.
   [[nodiscard]] const std::vector<SensorEvent>& sensor_events() const;
   /// SHA-256 over the whole state, moving bodies in the model's order.

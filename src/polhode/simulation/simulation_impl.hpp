@@ -75,13 +75,13 @@ struct Simulation::Impl {
   double surface_gap = std::numeric_limits<double>::quiet_NaN();
   /// A solid's report at the instant, and the largest error of its stress.
   struct SolidWatch {
-    NodalRecovery recovery;
+    solids::NodalRecovery recovery;
     double least_energy;  ///< Rounding of the energy [J].
     SolidReport report = {};
     std::int64_t step = -1;
     double largest_energy = 0.0, error_energy = 0.0, largest_error = 0.0, t_largest = 0.0;
 
-    void see(const NodalFields& nodal, double t) {
+    void see(const solids::NodalFields& nodal, double t) {
       largest_energy = std::max(largest_energy, nodal.energy);
       error_energy = nodal.error_energy;
       if (error_energy <= largest_error) return;
@@ -95,7 +95,8 @@ struct Simulation::Impl {
   };
   std::map<int, ProbeTarget> probes;     ///< Those queried by name.
   std::deque<SolidWatch> solid_watches;  ///< Created at first use; references to them stay valid.
-  std::map<const SolidElements*, LeastStretch> least_stretches;  ///< See watch_stretches().
+  std::map<const solids::SolidElements*, solids::LeastStretch>
+      least_stretches;  ///< See watch_stretches().
 
   explicit Impl(Model m)
       : model(std::move(m)),
@@ -323,12 +324,12 @@ struct Simulation::Impl {
     const Nodes& nodes = system.nodes();
     for (const SolidMap& solid : map.solids)
       for (std::size_t b = 0; b < solid.groups.size(); ++b) {
-        const SolidElements& elements = *solid.elements[b];
+        const solids::SolidElements& elements = *solid.elements[b];
         if (elements.element().least_stretch == 0.0) continue;
-        const LeastStretch now = elements.least_stretch(
+        const solids::LeastStretch now = elements.least_stretch(
             node_instant(system, state, still),
             state.element_history.data() + nodes.first_history(solid.groups[b]));
-        LeastStretch& least = least_stretches[&elements];
+        solids::LeastStretch& least = least_stretches[&elements];
         if (now.value < least.value) least = now;
       }
   }
@@ -337,9 +338,9 @@ struct Simulation::Impl {
     while (solid_watches.size() <= static_cast<std::size_t>(solid)) {
       const SolidMap& next = map.solids[solid_watches.size()];
       double volume = 0.0;
-      for (const SolidElements* elements : next.elements) volume += elements->volume();
-      const LinearModuli moduli = next.elements.front()->material().linear();
-      solid_watches.push_back({NodalRecovery(next.plan.mesh, moduli),
+      for (const solids::SolidElements* elements : next.elements) volume += elements->volume();
+      const solids::LinearModuli moduli = next.elements.front()->material().linear();
+      solid_watches.push_back({solids::NodalRecovery(next.plan.mesh, moduli),
                                moduli.shear * volume * kRoundedStrain * kRoundedStrain});
     }
     return solid_watches[static_cast<std::size_t>(solid)];
@@ -349,7 +350,7 @@ struct Simulation::Impl {
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> list = stepper->warnings();
     for (const SolidMap& solid : map.solids)
-      for (const SolidElements* elements : solid.elements) {
+      for (const solids::SolidElements* elements : solid.elements) {
         const auto least = least_stretches.find(elements);
         if (least == least_stretches.end()) continue;
         const std::string text = elements->stretch_warning(least->second);

@@ -176,7 +176,7 @@ Mat3 Simulation::solid_stress(int solid, const SolidPoint& point) const {
 
 void Simulation::watch_stress() {
   for (int i = 0; i < static_cast<int>(impl_->map.solids.size()); ++i) {
-    const NodalFields& nodal = solid(i).nodal;
+    const solids::NodalFields& nodal = solid(i).nodal;
     impl_->solid_watch(i).see(nodal, impl_->state.t);
   }
 }
@@ -248,7 +248,7 @@ ContactLosses Simulation::contact_losses() const {
   return sum;
 }
 
-std::vector<SurfacePointReport> Simulation::surface_points(int surface) const {
+std::vector<surface_contact::SurfacePointReport> Simulation::surface_points(int surface) const {
   const ContactMap::Surface& s = impl_->map.contact.surfaces.at(static_cast<std::size_t>(surface));
   const Nodes& nodes = impl_->system.nodes();
   StepContext still;

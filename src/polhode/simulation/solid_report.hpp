@@ -16,7 +16,7 @@ struct SolidReport {
   std::vector<Vec3> velocity;      ///< [m/s]
   // By element of its mesh
   std::vector<ElementSample> elements;
-  NodalFields nodal;  ///< Stresses at nodes, averaged from elements.
+  solids::NodalFields nodal;  ///< Stresses at nodes, averaged from elements.
 };
 
 /// Wrench of a bonded body, or of prescribed nodes, on a solid.

@@ -11,8 +11,8 @@ namespace polhode {
 
 namespace {
 
-SurfaceReport report_of(const System& system, const State& state,
-                        const ContactMap::Surface& surface) {
+surface_contact::SurfaceReport report_of(const System& system, const State& state,
+                                         const ContactMap::Surface& surface) {
   return surface.touching->report(state.element_history.data() +
                                   system.nodes().first_history(surface.group));
 }
@@ -26,7 +26,7 @@ ContactReport surface_report(const System& system, const State& state, const Con
   for (const ContactMap::Surface& surface : map.surfaces) {
     const Side own = surface.own;
     if (std::minmax(own, surface.side) != std::minmax(pair.a, pair.b)) continue;
-    const SurfaceReport r = report_of(system, state, surface);
+    const surface_contact::SurfaceReport r = report_of(system, state, surface);
     const double sign = own == pair.a ? 1.0 : -1.0;  // reports are of forces on the solid
     report.gap = std::fmin(report.gap, r.least_gap);
     report.normal_force += r.normal_force;
@@ -50,7 +50,7 @@ ContactReport surface_report(const System& system, const State& state, const Con
 ContactLosses surface_losses(const System& system, const State& state, const ContactMap& map) {
   ContactLosses sum;
   for (const ContactMap::Surface& surface : map.surfaces) {
-    const SurfaceReport r = report_of(system, state, surface);
+    const surface_contact::SurfaceReport r = report_of(system, state, surface);
     sum.impacts += r.normal_loss;
     sum.friction += r.friction_loss;
   }
@@ -60,7 +60,7 @@ ContactLosses surface_losses(const System& system, const State& state, const Con
 SurfaceFigures surface_figures(const System& system, const State& state, const ContactMap& map) {
   SurfaceFigures figures{std::numeric_limits<double>::quiet_NaN(), 0};
   for (const ContactMap::Surface& surface : map.surfaces) {
-    const SurfaceReport r = report_of(system, state, surface);
+    const surface_contact::SurfaceReport r = report_of(system, state, surface);
     figures.least_gap = std::fmin(figures.least_gap, r.least_gap);
     if (r.sticking + r.slipping > 0) ++figures.touching;
   }

@@ -5,7 +5,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Stresses and energies of a solid at its nodes, and the deviation of its elements from them.
 struct NodalFields {
@@ -19,4 +19,4 @@ struct NodalFields {
   double error_energy = 0.0;  ///< That of the differences [J]. @eq{stress-error-energy}
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -7,7 +7,7 @@
 #include <polhode/solids/nodal_recovery.hpp>
 #include <polhode/solids/stress_patches.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 namespace {
 
@@ -150,4 +150,4 @@ NodalFields NodalRecovery::fields(std::span<const ElementSample> elements) const
   return result;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

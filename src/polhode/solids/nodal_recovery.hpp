@@ -10,7 +10,7 @@
 #include <polhode/solids/nodal_fields.hpp>
 #include <polhode/system/element_group.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// √(3/2 s:s) of the deviator s of a stress [Pa].
 [[nodiscard]] double von_mises(const Mat3& stress);
@@ -38,4 +38,4 @@ class NodalRecovery {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -11,7 +11,7 @@
 #include <polhode/solids/elements/reference_data.hpp>
 #include <polhode/solids/solid_elements.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 Mat3 symmetric(const double* v) {
@@ -320,4 +320,4 @@ std::unique_ptr<SolidElements> make_solid_elements(SolidElementsDescription d) {
   return std::make_unique<SolidGroup>(std::move(d));
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

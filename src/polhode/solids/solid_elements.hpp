@@ -11,7 +11,7 @@
 #include <polhode/system/element_group.hpp>
 #include <polhode/system/internal_unknowns.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Solid elements of one type and material.
 struct SolidElementsDescription {
@@ -57,4 +57,4 @@ class SolidElements : public ElementGroup, public InternalUnknowns {
 /// of fibres, elements that are inverted or flat in the undeformed shape (which are named).
 [[nodiscard]] std::unique_ptr<SolidElements> make_solid_elements(SolidElementsDescription d);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -9,7 +9,7 @@
 #include <polhode/solids/elements/quadrature.hpp>
 #include <polhode/solids/stress_patches.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 namespace {
 
@@ -326,4 +326,4 @@ RecoveredValues StressPatches::at_nodes(const RecoveredValues& at_corners) const
   return values;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 #include <polhode/core/types.hpp>
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Number of values recovered together: six components of stress and the energy density.
 inline constexpr int kRecovered = 7;
@@ -82,4 +82,4 @@ class StressPatches {
   std::vector<std::vector<Share>> shares_;  ///< By node; their sum is 1.
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

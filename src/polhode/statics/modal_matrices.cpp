@@ -69,9 +69,9 @@ std::vector<int> ModalMatrices::counted() const {
   return list;
 }
 
-KktValues ModalMatrices::nothing() const {
-  KktValues values;
-  KktValues::Pair none;
+linear::KktValues ModalMatrices::nothing() const {
+  linear::KktValues values;
+  linear::KktValues::Pair none;
   none.K_ab.setZero();
   none.K_ba.setZero();
   none.B_a.setZero();
@@ -86,7 +86,7 @@ KktValues ModalMatrices::nothing() const {
 
 void ModalMatrices::put_masses(const State& state) {
   const Nodes& nodes = system_.nodes();
-  KktValues values = nothing();
+  linear::KktValues values = nothing();
   for (int b = 0; b < system_.body_count(); ++b) {
     const BodyData& body = system_.bodies()[b];
     const Mat3 Lambda = system_.motion(state, b).Lambda();
@@ -117,14 +117,14 @@ void ModalMatrices::put_masses(const State& state) {
 /// Converts compliant rows to springs: G Δq + C Δλ̂ = 0 adds B C⁻¹ G to the stiffness; the row
 /// becomes Δλ̂ = 0. @eq{compliance-row}
 void ModalMatrices::put_springs_for_compliant_rows() {
-  const KktValues& given = newton_.bodies().values();
-  const KktTopology& topology = newton_.bodies().topology();
-  KktValues values = nothing();
+  const linear::KktValues& given = newton_.bodies().values();
+  const linear::KktTopology& topology = newton_.bodies().topology();
+  linear::KktValues values = nothing();
   bool any = false;
   for (std::size_t i = 0; i < topology.pairs.size(); ++i) {
-    const KktPair& pair = topology.pairs[i];
-    const KktValues::Pair& from = given.pairs[i];
-    KktValues::Pair& to = values.pairs[i];
+    const linear::KktPair& pair = topology.pairs[i];
+    const linear::KktValues::Pair& from = given.pairs[i];
+    linear::KktValues::Pair& to = values.pairs[i];
     for (int k = 0; k < pair.rows; ++k) {
       if (!newton_.bodies().is_spring(pair.first_row + k)) continue;
       any = true;
@@ -171,7 +171,7 @@ void ModalMatrices::put_damping(const State& state, const ModeOptions& options) 
 /// spin. @eq{modes-gyroscopic}
 bool ModalMatrices::put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
                                    SaddleMatrix& gyroscopic) const {
-  KktValues values = nothing();
+  linear::KktValues values = nothing();
   bool any = false;
   for (int b = 0; b < system_.body_count(); ++b) {
     const BodyData& body = system_.bodies()[b];
@@ -190,7 +190,7 @@ bool ModalMatrices::put_gyroscopic(const State& state, const std::vector<Vec3>& 
 /// the configuration; this stiffness does work around a closed path. By central differences of the
 /// velocity-dependent part of each wrench. @eq{modes-circulatory}
 void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>& spin) {
-  KktValues values = nothing();
+  linear::KktValues values = nothing();
   const KktMap map = kkt_map(system_);
   StepContext context;
   context.load_factor = 1.0;

@@ -77,7 +77,7 @@ class ModalMatrices {
   [[nodiscard]] bool put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
                                     SaddleMatrix& gyroscopic) const;
   void put_circulatory(const State& state, const std::vector<Vec3>& spin);
-  [[nodiscard]] KktValues nothing() const;
+  [[nodiscard]] linear::KktValues nothing() const;
   [[nodiscard]] Vec times(const SaddleMatrix& A, double factor, const Vec& x) const;
 
   const System& system_;

@@ -33,8 +33,8 @@ struct InstantSolver::Impl {
   };
   std::vector<CoupledMass> coupled;
   StepContext context;
-  std::unique_ptr<LinearSolver> solver;  // with `values`, from the first use on
-  KktValues values;
+  std::unique_ptr<linear::LinearSolver> solver;  // with `values`, from the first use on
+  linear::KktValues values;
   Vec rhs, x, correction;
   std::unique_ptr<NodeInertia> nodes;  ///< Of deformable solids, if there are any.
   std::vector<Vec6> of_nodes;          ///< By body: condensed impulses on free nodes.
@@ -68,7 +68,7 @@ struct InstantSolver::Impl {
 
   void prepare() {
     if (solver) return;
-    solver = make_linear_solver(solver_name);
+    solver = linear::make_linear_solver(solver_name);
     if (!system.nodes().empty()) {
       nodes = std::make_unique<NodeInertia>(system);
       const auto& more = nodes->pairs();
@@ -77,13 +77,13 @@ struct InstantSolver::Impl {
     solver->analyse(map.topology);
     values.diagonal.assign(map.topology.bodies, Mat6::Zero());
     values.pairs.resize(map.topology.pairs.size());
-    for (KktValues::Pair& v : values.pairs) {
+    for (linear::KktValues::Pair& v : values.pairs) {
       v.K_ab.setZero();
       v.K_ba.setZero();
     }
     for (const CoupledMass& m : coupled) {
       if (m.pair < 0) continue;
-      KktValues::Pair& v = values.pairs[m.pair];
+      linear::KktValues::Pair& v = values.pairs[m.pair];
       v.K_ab.topLeftCorner<3, 3>().diagonal().array() += m.mass / system.mean_mass();
       v.K_ba = v.K_ab;
     }
@@ -120,12 +120,12 @@ struct InstantSolver::Impl {
         true);
   }
   /// Blocks of the pairs of bodies coupled by solids, which come last.
-  [[nodiscard]] std::span<KktValues::Pair> cliques() {
+  [[nodiscard]] std::span<linear::KktValues::Pair> cliques() {
     return std::span(values.pairs).last(nodes->pairs().size());
   }
   void clear_cliques() {
     if (!nodes) return;
-    for (KktValues::Pair& v : cliques()) {
+    for (linear::KktValues::Pair& v : cliques()) {
       v.K_ab.setZero();
       v.K_ba.setZero();
     }
@@ -148,7 +148,7 @@ struct InstantSolver::Impl {
   void put_rows(int interaction, const PairTerms& terms, double epsilon) {
     const int pair = map.pair[interaction];
     if (pair < 0) return;
-    KktValues::Pair& v = values.pairs[pair];
+    linear::KktValues::Pair& v = values.pairs[pair];
     v.G_a = terms.G_a;
     v.G_b = terms.G_b;
     for (int k = 0; k < map.topology.pairs[pair].rows; ++k) {
@@ -179,8 +179,8 @@ struct InstantSolver::Impl {
   double rows_times(const Vec& field, Eigen::Ref<Vec> out) const {
     double scale = 0.0;
     for (std::size_t p = 0; p < map.topology.pairs.size(); ++p) {
-      const KktPair& pair = map.topology.pairs[p];
-      const KktValues::Pair& v = values.pairs[p];
+      const linear::KktPair& pair = map.topology.pairs[p];
+      const linear::KktValues::Pair& v = values.pairs[p];
       for (int k = 0; k < pair.rows; ++k) {
         double sum = 0.0, size = 0.0;
         for (int i = 0; i < 6; ++i) {
@@ -201,8 +201,8 @@ struct InstantSolver::Impl {
     for (int b = 0; b < map.topology.bodies; ++b)
       out.segment<6>(6 * b) = values.diagonal[b] * all.segment<6>(6 * b);
     for (std::size_t p = 0; p < map.topology.pairs.size(); ++p) {
-      const KktPair& pair = map.topology.pairs[p];
-      const KktValues::Pair& v = values.pairs[p];
+      const linear::KktPair& pair = map.topology.pairs[p];
+      const linear::KktValues::Pair& v = values.pairs[p];
       if (pair.a != kGround && pair.b != kGround) {
         out.segment<6>(6 * pair.a) += v.K_ab * all.segment<6>(6 * pair.b);
         out.segment<6>(6 * pair.b) += v.K_ba * all.segment<6>(6 * pair.a);

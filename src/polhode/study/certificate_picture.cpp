@@ -54,10 +54,10 @@ struct Row {
   const CertifiedQuantity& q;
   double y, duration;
 
-  [[nodiscard]] SvgPanel::Box box(double x, double width) const {
+  [[nodiscard]] io::SvgPanel::Box box(double x, double width) const {
     return {x, y + 46, width, kHigh};
   }
-  void shade(SvgPanel& panel) const {
+  void shade(io::SvgPanel& panel) const {
     if (q.report.lost_from) panel.shade(*q.report.lost_from, duration, kLost);
   }
 };
@@ -69,8 +69,8 @@ std::string value_panel(const Row& row) {
   for (Eigen::Index c = 0; c < fine.cols(); ++c)
     for (const double y : fine.col(c)) range.add(y);
   range = range.roomy();
-  SvgPanel panel(row.box(70, 380), 0.0, row.duration, range.low, range.high,
-                 format("value [{}], with its error bar", q.unit));
+  io::SvgPanel panel(row.box(70, 380), 0.0, row.duration, range.low, range.high,
+                     format("value [{}], with its error bar", q.unit));
   row.shade(panel);
   for (Eigen::Index c = 0; c < fine.cols(); ++c) {
     const std::vector<double> y = column(fine, c);
@@ -106,8 +106,8 @@ std::string bar_panel(const Row& row) {
   range = range.roomy();
   range.low = std::floor(std::max(range.low, range.high - kMaxDecades));
   range.high = std::max(std::ceil(range.high), range.low + 1.0);
-  SvgPanel panel(row.box(535, 330), 0.0, row.duration, range.low, range.high,
-                 format("error bar [{}]; grey: from the coarse to the fine run", q.unit), true);
+  io::SvgPanel panel(row.box(535, 330), 0.0, row.duration, range.low, range.high,
+                     format("error bar [{}]; grey: from the coarse to the fine run", q.unit), true);
   row.shade(panel);
   panel.curve(q.series.t, own, kOwn, true);
   panel.curve(q.series.t, bar, kBar);
@@ -116,8 +116,8 @@ std::string bar_panel(const Row& row) {
 
 std::string order_panel(const Row& row, const std::vector<double>& orders) {
   const double most = *std::max_element(orders.begin(), orders.end());
-  SvgPanel panel(row.box(930, 220), 0.0, row.duration, -1.0, most + 2.0,
-                 "observed order; dotted: of the method");
+  io::SvgPanel panel(row.box(930, 220), 0.0, row.duration, -1.0, most + 2.0,
+                     "observed order; dotted: of the method");
   row.shade(panel);
   for (const double order : orders) panel.level(order, "#c8641b");
   panel.curve(row.q.series.t, row.q.report.order_at, kBar);
@@ -139,24 +139,25 @@ std::string verdict(const CertifiedQuantity& q) {
 std::string certificate_svg(const Certificate& certificate) {
   const std::size_t count = std::min(certificate.quantities.size(), kMaxPictured);
   std::string text =
-      svg_text(30, 32, certificate.title.empty() ? "Certificate" : certificate.title, "head");
+      io::svg_text(30, 32, certificate.title.empty() ? "Certificate" : certificate.title, "head");
   std::string runs = certificate.automatic ? "tolerance " : "step ";
   for (std::size_t k = 0; k < 3; ++k)
     runs += format("{}{:.3g}{} ({} steps)", k == 0 ? "" : ", ", certificate.runs[k].setting,
                    certificate.automatic ? "" : " s", certificate.runs[k].summary.steps);
-  text += svg_text(30, 54, runs + ". Time in seconds.");
-  text += svg_text(30, 72,
-                   certificate.quantities.size() > count
-                       ? format("The first {} of {} quantities. Red: no convergence.", count,
-                                certificate.quantities.size())
-                       : "Red: no convergence.");
+  text += io::svg_text(30, 54, runs + ". Time in seconds.");
+  text += io::svg_text(30, 72,
+                       certificate.quantities.size() > count
+                           ? format("The first {} of {} quantities. Red: no convergence.", count,
+                                    certificate.quantities.size())
+                           : "Red: no convergence.");
   for (std::size_t k = 0; k < count; ++k) {
     const CertifiedQuantity& q = certificate.quantities[k];
     const Row row{q, kTop + kRow * static_cast<double>(k), certificate.duration};
-    text += svg_text(30, row.y + 18, format("{} [{}]: {}", q.name(), q.unit, verdict(q)), "name");
+    text +=
+        io::svg_text(30, row.y + 18, format("{} [{}]: {}", q.name(), q.unit, verdict(q)), "name");
     text += value_panel(row) + bar_panel(row) + order_panel(row, certificate.orders);
   }
-  return svg_page(kWidth, kTop + kRow * static_cast<double>(count) + 10, text);
+  return io::svg_page(kWidth, kTop + kRow * static_cast<double>(count) + 10, text);
 }
 
 }  // namespace polhode

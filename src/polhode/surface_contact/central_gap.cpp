@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/surface_contact/central_gap.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -150,4 +150,4 @@ typename CentralGapOf<kMaxSets>::Stiffness CentralGapOf<kMaxSets>::stiffness(
 template class CentralGapOf<2>;
 template class CentralGapOf<kMaxTriangles>;
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

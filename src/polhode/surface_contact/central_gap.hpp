@@ -4,7 +4,7 @@
 #include <polhode/contact_laws/stop_force.hpp>
 #include <polhode/surface_contact/nearest_four.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Positions and displacements of four points over a step.
 struct FourMoves {
@@ -88,4 +88,4 @@ using CentralGap = CentralGapOf<2>;
 /// Largest number of triangles about one point, at both ends of a step together.
 inline constexpr int kMaxTriangles = 8;
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -3,7 +3,7 @@
 
 #include <polhode/surface_contact/combined_gap.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 SurfaceGap combined_gap(const contact::NormalLaw& law,
                         std::vector<std::pair<SurfaceGap, int>>& near, const SurfaceGap& nearest) {
@@ -33,4 +33,4 @@ SurfaceGap combined_gap(const contact::NormalLaw& law,
   return g;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

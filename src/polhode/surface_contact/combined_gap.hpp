@@ -6,7 +6,7 @@
 
 #include <polhode/surface_contact/rigid_mesh.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Height above the end of the barrier, as a part of its band, below which only the nearest feature
 /// counts. Only iterates get there.
@@ -19,4 +19,4 @@ inline constexpr double kDeepInRigid = 1e-9;
                                       std::vector<std::pair<SurfaceGap, int>>& near,
                                       const SurfaceGap& nearest);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Part of the initial clearance that remains in front of a surface at the end of a displacement.
 inline constexpr double kLeave = 0.1;
@@ -28,4 +28,4 @@ template <class Clearance>
   return std::min(most, part);
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 #include <polhode/surface_contact/contact_neighbours.hpp>
 #include <polhode/system/nodes.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -147,4 +147,4 @@ void ContactNeighbours::add(const Blocks& b, const MeshPoint& row, const MeshPoi
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

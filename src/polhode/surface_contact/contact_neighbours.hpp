@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/mesh_surface.hpp>
 #include <polhode/system/changing_sparsity.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Distance at the start, in gap tolerances, below which points of one surface are not paired.
 inline constexpr double kTogether = 4.0;
@@ -76,4 +76,4 @@ class ContactNeighbours {
   std::vector<int> carriers_;  ///< A body, or kFreeNode.
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -9,7 +9,7 @@
 #include <polhode/surface_contact/mesh_surface.hpp>
 #include <polhode/surface_contact/surface_points.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -53,7 +53,7 @@ Polygon left_of(const Polygon& p, const Point2& a, const Point2& b) {
 /// A face with straight edges, in its own plane.
 class FlatFace {
  public:
-  FlatFace(const CellShape& shape, std::span<const int> nodes, const std::vector<Vec3>& X)
+  FlatFace(const solids::CellShape& shape, std::span<const int> nodes, const std::vector<Vec3>& X)
       : shape_(shape), nodes_(nodes) {
     const auto corner = [&](std::size_t k) -> const Vec3& {
       return X[static_cast<std::size_t>(nodes[k])];
@@ -78,8 +78,8 @@ class FlatFace {
   [[nodiscard]] Vec weights(const Point2& at) const {
     Vec3 xi = nodes_.size() == 3 ? Vec3(1.0 / 3.0, 1.0 / 3.0, 0.0) : Vec3(0.0, 0.0, 0.0);
     for (int k = 0; k < 20; ++k) {
-      const Vec N = shape_functions(shape_, xi);
-      const Mat D = shape_gradients(shape_, xi);
+      const Vec N = solids::shape_functions(shape_, xi);
+      const Mat D = solids::shape_gradients(shape_, xi);
       Point2 rest = at;
       Eigen::Matrix2d J = Eigen::Matrix2d::Zero();
       for (std::size_t a = 0; a < outline.size(); ++a) {
@@ -92,7 +92,7 @@ class FlatFace {
       xi.head<2>() += step;
       if (step.norm() < 1e-14) break;
     }
-    return shape_functions(shape_, xi);
+    return solids::shape_functions(shape_, xi);
   }
 
   Vec3 normal;
@@ -101,7 +101,7 @@ class FlatFace {
   bool is_flat = true;
 
  private:
-  const CellShape& shape_;
+  const solids::CellShape& shape_;
   std::span<const int> nodes_;
   Vec3 origin_;
   Vec3 axes_[2];
@@ -116,8 +116,8 @@ class PointMaker {
     for (const MeshPoint& v : other->vertices) vertices_.push_back(v.at(x.data()));
   }
 
-  void add(const std::string& where, const LoadedFaces& block) {
-    const CellShape& shape = cell_shape(block.shape);
+  void add(const std::string& where, const solids::LoadedFaces& block) {
+    const solids::CellShape& shape = solids::cell_shape(block.shape);
     const auto n = static_cast<std::size_t>(shape.size());
     if (shape.order > 1) return add_points(surface_points(where, block, X_));
     for (std::size_t first = 0; first < block.nodes.size(); first += n) {
@@ -213,11 +213,11 @@ class PointMaker {
 }  // namespace
 
 std::vector<MeshPoint> contact_points(const std::string& where,
-                                      const std::vector<LoadedFaces>& faces,
+                                      const std::vector<solids::LoadedFaces>& faces,
                                       const std::vector<Vec3>& X, const MeshSurface* other) {
   PointMaker maker(X, other);
-  for (const LoadedFaces& block : faces) maker.add(where, block);
+  for (const solids::LoadedFaces& block : faces) maker.add(where, block);
   return maker.take();
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

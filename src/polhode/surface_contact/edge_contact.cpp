@@ -7,7 +7,7 @@
 
 #include <polhode/surface_contact/edge_touch.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 EdgeContact::EdgeContact(std::string name, Sides sides, const SurfaceLaw& law,
                          const SolidContactStart& start)
@@ -276,4 +276,4 @@ std::vector<SurfacePointReport> EdgeContact::point_reports(const NodeStep& insta
   return list;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -14,7 +14,7 @@
 #include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/element_group.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Contact of lines of edges: sharp edges of two solids, or of one, that may cross between their
 /// nodes, and cables, which are round edges. See EdgePair for the force between two of them.
@@ -147,4 +147,4 @@ class EdgeContact final : public ElementGroup,
   mutable Search search_;  ///< For the last history queried.
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -3,7 +3,7 @@
 #include <polhode/surface_contact/edge_pair.hpp>
 #include <polhode/surface_contact/nearest_weights.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -101,7 +101,8 @@ std::array<Mat3, 4> EdgePair::slip_rates(const Vec3& n) const {
   const Vec3 e = x[1] - x[0], f = x[3] - x[2];
   const Rolling<double> rolling(contact::v3(e), contact::v3(f), round());
   std::array<Mat3, 4> across{};
-  if (rolling.w > 0.0) across = polhode::slip_rates(x, nearest_.c, n, {0, 1, 2, 3});
+  if (rolling.w > 0.0)
+    across = polhode::surface_contact::slip_rates(x, nearest_.c, n, {0, 1, 2, 3});
   if (rolling.w == 1.0) return across;
   const Vec3 t = contact::value(rolling.t), b = n.cross(t).normalized(), a = b.cross(n);
   const double per_e = 1.0 / e.norm(), per_f = (e.dot(f) < 0.0 ? -1.0 : 1.0) / f.norm();
@@ -130,4 +131,4 @@ FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
                    std::max(0.0, pressure_), tangent);
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -5,7 +5,7 @@
 
 #include <polhode/surface_contact/edge_touch.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Adds the impacts of pairs. The normal rate is that of the stored energy over the resultant on
 /// the first edge; without stored energy that of the distance. @eq{surface-turn} @eq{cable-impact}
@@ -69,4 +69,4 @@ void EdgeContact::settled(const SurfaceImpact& impact, const ResolvedImpact& set
   SurfaceTotals::add_impulse(impact.normal, settled, dt, history + totals());
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 
 #include <polhode/surface_contact/edge_lines.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -59,4 +59,4 @@ EdgeLines sharp_edges(const MeshSurface& surface, const std::vector<Vec3>& X) {
   return lines;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -6,7 +6,7 @@
 
 #include <polhode/surface_contact/mesh_surface.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Straight edges for crossing contact: sharp edges of a solid's surface, segments of a cable.
 struct EdgeLines {
@@ -28,4 +28,4 @@ struct EdgeLines {
 /// @param X  Positions at the start by number [m].
 [[nodiscard]] EdgeLines sharp_edges(const MeshSurface& surface, const std::vector<Vec3>& X);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -5,7 +5,7 @@
 
 #include <polhode/surface_contact/edge_pair.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -281,4 +281,4 @@ Vec3 EdgePair::normal() const {
   return y.normalized();
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -9,7 +9,7 @@
 #include <polhode/surface_contact/slip_rates.hpp>
 #include <polhode/system/surface_impacts.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Data of two edges that may cross.
 struct EdgePairData {
@@ -119,4 +119,4 @@ class EdgePair {
 /// @param squares  As of EdgePairData.
 [[nodiscard]] double crossing(const Vec3& e, const Vec3& f, double squares);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -9,7 +9,7 @@
 #include <polhode/surface_contact/conservative_advancement.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -78,7 +78,7 @@ double EdgeContact::clearance(int e, int f, const Vec3 (&x)[4]) const {
 
 void EdgeContact::find(Search& s) const {
   const double look = nodes_.look(s.key.data()) + centre_ + law_.normal.tolerance;
-  std::vector<contact::Bounds> boxes;
+  std::vector<geometry::Bounds> boxes;
   const auto add = [&](const EdgeLines& lines, double margin) {
     for (const auto& [a, b] : lines.edges) {
       const Vec3 x = nodes_.place(lines.vertices[static_cast<std::size_t>(a)], s.key.data()),
@@ -90,7 +90,7 @@ void EdgeContact::find(Search& s) const {
   add(sides_.second, 0.5 * look);
   const auto firsts = static_cast<int>(sides_.first.edges.size());
   std::vector<std::pair<int, int>> near;
-  contact::BroadPhase().find(boxes, near);
+  geometry::BroadPhase().find(boxes, near);
   s.pairs.clear();
   std::vector<std::vector<int>> sets;
   for (const auto& [i, j] : near) {
@@ -222,4 +222,4 @@ std::optional<SurfaceOverlap> EdgeContact::overlap(const NodeStep& instant) cons
   return SurfaceOverlap{.depth = deepest};
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 
 #include <polhode/surface_contact/edge_contact.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// A pair of edges that is active over a step, or stores its impact.
 struct EdgeContact::Touch {
@@ -17,4 +17,4 @@ struct EdgeContact::Touch {
   double by_friction = 0.0, bristle_n1 = 0.0;  ///< Energies [J/m²].
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -2,7 +2,7 @@
 #include <polhode/surface_contact/line_friction.hpp>
 #include <polhode/surface_contact/plane_friction.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -70,4 +70,4 @@ LineSlide::LineSlide(const FourMoves& moves, double alpha, const SurfaceLaw& law
       K.block<3, 1>(3 * k, j) << D.force[k].x.d[j], D.force[k].y.d[j], D.force[k].z.d[j];
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

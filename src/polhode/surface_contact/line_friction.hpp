@@ -4,7 +4,7 @@
 #include <polhode/surface_contact/central_gap.hpp>
 #include <polhode/surface_contact/surface_law.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Friction lengthwise between two parallel round edges over a step, per area.
 ///
@@ -27,4 +27,4 @@ struct LineSlide {
             const CentralGap::Force& by_pressure, double kept, bool tangent);
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

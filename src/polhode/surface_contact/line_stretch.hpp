@@ -7,7 +7,7 @@
 
 #include <polhode/system/node_step.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Kind of the element groups that are contacts of cables.
 inline constexpr const char* kCableContact = "cable contact";
@@ -41,4 +41,4 @@ inline constexpr double kMoreStretch = 1.1;
   return at_end > allowed ? (allowed - at_start) / (at_end - at_start) : 1.0;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/surface_contact/mesh_gap.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -169,4 +169,4 @@ void MeshGapStep::fill(const MeshGap& at_n, const MeshGap& at_n1) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -8,7 +8,7 @@
 #include <polhode/surface_contact/central_gap.hpp>
 #include <polhode/surface_contact/surface_law.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Distance of a point from moving triangles.
 ///
@@ -77,4 +77,4 @@ struct MeshGapStep {
   void fill(const MeshGap& at_n, const MeshGap& at_n1);
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -5,7 +5,7 @@
 
 #include <polhode/surface_contact/mesh_surface.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 void MeshPoint::add(int number, double weight) {
   if (weight == 0.0) return;
@@ -74,9 +74,9 @@ class Triangulation {
 
 }  // namespace
 
-MeshSurface triangulated(const std::vector<LoadedFaces>& faces) {
+MeshSurface triangulated(const std::vector<solids::LoadedFaces>& faces) {
   Triangulation t;
-  for (const LoadedFaces& block : faces) {
+  for (const solids::LoadedFaces& block : faces) {
     const auto n = static_cast<std::size_t>(block.shape[block.shape.size() - 1] - '0');
     for (std::size_t first = 0; first < block.nodes.size(); first += n)
       t.add(block.shape, std::span(block.nodes).subspan(first, n));
@@ -84,4 +84,4 @@ MeshSurface triangulated(const std::vector<LoadedFaces>& faces) {
   return t.take();
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -8,7 +8,7 @@
 #include <polhode/solids/loads/loaded_faces.hpp>
 #include <polhode/system/node_step.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// A point of a mesh: Σ N_a x_a.
 struct MeshPoint {
@@ -34,7 +34,7 @@ struct MeshSurface {
   std::vector<MeshPoint> vertices;
   std::vector<std::array<int, 3>> triangles;  ///< Counterclockwise seen from outside.
 };
-[[nodiscard]] MeshSurface triangulated(const std::vector<LoadedFaces>& faces);
+[[nodiscard]] MeshSurface triangulated(const std::vector<solids::LoadedFaces>& faces);
 
 /// Quadrature points of the contact potential: the nodes of faces with straight edges with their
 /// tributary areas, and Gauss points of curved faces.
@@ -45,8 +45,8 @@ struct MeshSurface {
 /// functions): a uniform pressure then loads both meshes exactly, whatever their sizes.
 /// @param X  Positions at the start by number [m].
 [[nodiscard]] std::vector<MeshPoint> contact_points(const std::string& where,
-                                                    const std::vector<LoadedFaces>& faces,
+                                                    const std::vector<solids::LoadedFaces>& faces,
                                                     const std::vector<Vec3>& X,
                                                     const MeshSurface* other);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 #include <polhode/geometry/nearest.hpp>
 #include <polhode/surface_contact/nearest_four.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -57,12 +57,12 @@ Eigen::Matrix<double, NearestFour::kLengths, NearestFour::kLengths> NearestFour:
 }
 
 NearestFour nearest_of_triangle(const Vec3 (&x)[4]) {
-  const contact::TriangleRegion region = contact::nearest_on_triangle(x[0], x[1], x[2], x[3]);
+  const geometry::TriangleRegion region = geometry::nearest_on_triangle(x[0], x[1], x[2], x[3]);
   NearestFour n;
   n.c[0] = 1.0;
-  if (region.kind == contact::TriangleRegion::corner) {
+  if (region.kind == geometry::TriangleRegion::corner) {
     n.c[1 + region.k] = -1.0;
-  } else if (region.kind == contact::TriangleRegion::edge) {
+  } else if (region.kind == geometry::TriangleRegion::edge) {
     const int a = 1 + region.k, b = 1 + (region.k + 1) % 3;
     const Vec3 e = x[b] - x[a];
     const double t = (region.nearest - x[a]).dot(e) / e.squaredNorm();
@@ -125,7 +125,7 @@ NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place, double f_place)
     return part == 1.0 ? to : Vec3((1.0 - part) * from + part * to);
   };
   if (e_place < 0.0 && f_place < 0.0) {
-    const contact::SegmentsRegion r = contact::nearest_on_segments(x[0], e, x[2], f);
+    const geometry::SegmentsRegion r = geometry::nearest_on_segments(x[0], e, x[2], f);
     a = r.s, b = r.t;
     a_free = r.s_free, b_free = r.t_free;
     if (a_free && b_free)
@@ -143,4 +143,4 @@ NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place, double f_place)
   return n;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -3,7 +3,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// The vector y = Σ c_i x_i between the nearest points of two features with four points in total: a
 /// point and a triangle, c = (1, −w), or two edges, c = (1 − a, a, b − 1, −b).
@@ -42,4 +42,4 @@ struct NearestFour {
 [[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place = -1.0,
                                            double f_place = -1.0);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -6,7 +6,7 @@
 #include <polhode/math/dual.hpp>
 #include <polhode/surface_contact/nearest_four.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Weights c of the nearest points in scalar type T: where they are free, the derivatives of |Σ c
 /// x|² by their directions vanish.
@@ -39,4 +39,4 @@ void nearest_weights(const NearestFour& nearest, const contact::V3<T> (&x)[4], T
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

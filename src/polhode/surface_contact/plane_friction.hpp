@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/central_gap.hpp>
 #include <polhode/surface_contact/surface_law.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Two directions that span the sliding plane, such as two sides of a triangle, and their dual
 /// vectors: grad_e·e = 1, grad_e·f = 0.
@@ -114,4 +114,4 @@ struct FourSlide {
   FourSlide() = default;
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

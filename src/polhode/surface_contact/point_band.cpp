@@ -3,7 +3,7 @@
 
 #include <polhode/surface_contact/point_band.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -128,4 +128,4 @@ SurfaceLaw PointPhase::law(const SurfaceLaw& law, LoweredLaw own) const {
   return now;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/surface_law.hpp>
 #include <polhode/system/surface_impacts.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Distance by which a barrier starts lower for a point that starts at a gap. Force begins at that
 /// gap, so that no energy is stored at the start, but a twentieth of the band remains. Zero outside
@@ -64,4 +64,4 @@ struct PointPhase {
   [[nodiscard]] SurfaceLaw law(const SurfaceLaw& law, LoweredLaw own = beginning_later) const;
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 #include <polhode/surface_contact/point_band.hpp>
 #include <polhode/system/history_record.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// History of a point of a surface in contact, in the surface's axes where that is rigid.
 struct PointMemory {
@@ -32,4 +32,4 @@ struct EdgeMemory {
 };
 static_assert(kNumbersOf<EdgeMemory> == EdgeMemory::kCount);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

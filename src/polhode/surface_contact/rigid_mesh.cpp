@@ -7,12 +7,12 @@
 #include <polhode/surface_contact/combined_gap.hpp>
 #include <polhode/surface_contact/rigid_mesh.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
-using contact::TriangleRegion;
-using contact::TriangleTree;
+using geometry::TriangleRegion;
+using geometry::TriangleTree;
 
 /// Offset, as a part of the rounding, at which the nearest features of a point are determined.
 /// Points of meshes often lie exactly over an edge or corner; with the offset neighbouring points
@@ -25,7 +25,7 @@ Vec3 normal_on(const Vec3& from, double distance) {
 
 }  // namespace
 
-RigidMesh::RigidMesh(contact::Shape surface)
+RigidMesh::RigidMesh(geometry::Shape surface)
     : surface_(std::move(surface)),
       tree_(surface_.corners, surface_.triangles),
       outward_(surface_.corners.size(), Vec3::Zero()) {
@@ -40,7 +40,7 @@ RigidMesh::RigidMesh(contact::Shape surface)
     }
   }
   bordered_ = std::any_of(surface_.edges.begin(), surface_.edges.end(),
-                          [](const contact::Shape::Edge& e) { return e.open; });
+                          [](const geometry::Shape::Edge& e) { return e.open; });
 }
 
 /// Whether the point lies in the bounding box of the surface, or, for one with a border, which has
@@ -52,32 +52,33 @@ bool RigidMesh::may_be_behind(const Vec3& y) const {
 }
 
 /// Nearest point of the surface. Enclosed points have their nearest point at any distance.
-TriangleTree::Hit RigidMesh::nearest(const Vec3& y, double at_most, bool sided) const {
+geometry::TriangleTree::Hit RigidMesh::nearest(const Vec3& y, double at_most, bool sided) const {
   const bool any = sided && may_be_behind(y);
   return tree_.nearest(y, any ? std::numeric_limits<double>::infinity() : at_most);
 }
 
-RigidMesh::Feature RigidMesh::feature(int triangle, const TriangleRegion& region) const {
+RigidMesh::Feature RigidMesh::feature(int triangle, const geometry::TriangleRegion& region) const {
   const auto t = static_cast<std::size_t>(triangle), k = static_cast<std::size_t>(region.k);
-  if (region.kind == TriangleRegion::face) return {region.kind, triangle, 0};
-  if (region.kind == TriangleRegion::edge) return {region.kind, surface_.triangle_edges[t][k], 0};
+  if (region.kind == geometry::TriangleRegion::face) return {region.kind, triangle, 0};
+  if (region.kind == geometry::TriangleRegion::edge)
+    return {region.kind, surface_.triangle_edges[t][k], 0};
   return {region.kind, surface_.triangles[t][k], 0};
 }
 
 /// Whether a point is behind the surface at its nearest point, by the normals of the triangles that
 /// meet there: the sign of their sum weighted by angles decides for any point (Baerentzen, Aanaes
 /// 2005). At a border nothing is behind.
-bool RigidMesh::behind(const Vec3& y, const TriangleTree::Hit& hit) const {
+bool RigidMesh::behind(const Vec3& y, const geometry::TriangleTree::Hit& hit) const {
   if (!may_be_behind(y)) return false;
   const Feature f = feature(hit.triangle, hit.region);
   const auto i = static_cast<std::size_t>(f.index);
   const Vec3 from = y - hit.region.nearest;
   switch (f.kind) {
-    case TriangleRegion::face:
+    case geometry::TriangleRegion::face:
       return surface_.planes[i].normal.dot(y) < surface_.planes[i].offset;
-    case TriangleRegion::edge:
+    case geometry::TriangleRegion::edge:
       return !surface_.edges[i].open && surface_.edges[i].out.dot(from) < 0.0;
-    case TriangleRegion::corner:
+    case geometry::TriangleRegion::corner:
       return !surface_.border_corner[i] && outward_[i].dot(from) < 0.0;
   }
   return false;
@@ -91,7 +92,7 @@ double RigidMesh::extent() const {
 }
 
 double RigidMesh::distance(const Vec3& y, double at_most, bool sided) const {
-  const TriangleTree::Hit hit = nearest(y, at_most + surface_.rounding, sided);
+  const geometry::TriangleTree::Hit hit = nearest(y, at_most + surface_.rounding, sided);
   if (hit.triangle < 0) return at_most;
   const double signed_distance = sided && behind(y, hit) ? -hit.distance : hit.distance;
   return std::min(at_most, signed_distance - surface_.rounding);
@@ -100,16 +101,16 @@ double RigidMesh::distance(const Vec3& y, double at_most, bool sided) const {
 /// Gap with a triangle, edge or corner as the core. @eq{surface-gap}
 SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y, double round) const {
   const auto i = static_cast<std::size_t>(feature.index);
-  if (feature.kind == TriangleRegion::face) {
-    const contact::Shape::Plane& plane = surface_.planes[i];
+  if (feature.kind == geometry::TriangleRegion::face) {
+    const geometry::Shape::Plane& plane = surface_.planes[i];
     const double height = plane.normal.dot(y) - plane.offset;
     const double side = height < 0.0 ? -1.0 : 1.0;
     return {side * height - round, side * plane.normal, Mat3::Zero()};
   }
   Vec3 from;
   Mat3 fixed = Mat3::Identity();  // I without the directions that the nearest point follows
-  if (feature.kind == TriangleRegion::edge) {
-    const contact::Shape::Edge& edge = surface_.edges[i];
+  if (feature.kind == geometry::TriangleRegion::edge) {
+    const geometry::Shape::Edge& edge = surface_.edges[i];
     const Vec3& p = surface_.corners[static_cast<std::size_t>(edge.i)];
     const Vec3 along = (surface_.corners[static_cast<std::size_t>(edge.j)] - p).normalized();
     from = y - p;
@@ -143,8 +144,8 @@ RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance)
     const auto corner = [&](int k) -> const Vec3& {
       return surface_.corners[static_cast<std::size_t>(k)];
     };
-    const TriangleRegion region =
-        contact::nearest_on_triangle(y, corner(c[0]), corner(c[1]), corner(c[2]));
+    const geometry::TriangleRegion region =
+        geometry::nearest_on_triangle(y, corner(c[0]), corner(c[1]), corner(c[2]));
     count(feature(t, region), 1);
     for (const int e : surface_.triangle_edges[static_cast<std::size_t>(t)]) edges.push_back(e);
     corners.insert(corners.end(), c.begin(), c.end());
@@ -154,19 +155,19 @@ RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance)
     indices->erase(std::unique(indices->begin(), indices->end()), indices->end());
   }
   for (const int e : edges) {
-    const contact::Shape::Edge& edge = surface_.edges[static_cast<std::size_t>(e)];
+    const geometry::Shape::Edge& edge = surface_.edges[static_cast<std::size_t>(e)];
     if (edge.open) continue;
     const Vec3& p = surface_.corners[static_cast<std::size_t>(edge.i)];
     const Vec3 v = surface_.corners[static_cast<std::size_t>(edge.j)] - p;
     const double t = (y - p).dot(v) / v.squaredNorm();
     if (t > 0.0 && t < 1.0)
-      count({TriangleRegion::edge, e, 0}, -1);
+      count({geometry::TriangleRegion::edge, e, 0}, -1);
     else
-      count({TriangleRegion::corner, t > 0.0 ? edge.j : edge.i, 0}, -1);
+      count({geometry::TriangleRegion::corner, t > 0.0 ? edge.j : edge.i, 0}, -1);
   }
   for (const int c : corners)
     if (!surface_.border_corner[static_cast<std::size_t>(c)])
-      count({TriangleRegion::corner, c, 0}, 1);
+      count({geometry::TriangleRegion::corner, c, 0}, 1);
   return list;
 }
 
@@ -186,7 +187,7 @@ SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
 
 SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuery& question) const {
   const double round = surface_.rounding + question.radius;
-  const TriangleTree::Hit hit = nearest(y, question.at_most + round, question.sided);
+  const geometry::TriangleTree::Hit hit = nearest(y, question.at_most + round, question.sided);
   if (hit.triangle < 0) return {question.at_most, Vec3::UnitZ(), Mat3::Zero()};
   SurfaceGap g = gap_of(feature(hit.triangle, hit.region), y, round);
   if (question.sided && behind(y, hit)) {
@@ -201,4 +202,4 @@ SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuery& question) const {
   return sum(y, g, question);
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

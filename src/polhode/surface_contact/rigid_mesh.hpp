@@ -8,7 +8,7 @@
 #include <polhode/geometry/shape.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Gap of a point [m], its gradient [-] and Hessian [1/m].
 struct SurfaceGap {
@@ -43,7 +43,7 @@ struct GapQuery {
 class RigidMesh {
  public:
   /// @param surface  A Solid::surface; one with a border is open above, towards +z.
-  explicit RigidMesh(contact::Shape surface);
+  explicit RigidMesh(geometry::Shape surface);
 
   [[nodiscard]] SurfaceGap gap(const Vec3& y, const GapQuery& question) const;
   /// Smallest of the gaps to features.
@@ -54,27 +54,28 @@ class RigidMesh {
 
  private:
   struct Feature {
-    contact::TriangleRegion::Kind kind;
+    geometry::TriangleRegion::Kind kind;
     int index = 0;  ///< Of a triangle, edge or corner.
     int count = 0;  ///< Multiplicity.
   };
   using Features = std::vector<Feature>;
 
   [[nodiscard]] bool may_be_behind(const Vec3& y) const;
-  [[nodiscard]] contact::TriangleTree::Hit nearest(const Vec3& y, double at_most, bool sided) const;
-  [[nodiscard]] Feature feature(int triangle, const contact::TriangleRegion& region) const;
-  [[nodiscard]] bool behind(const Vec3& y, const contact::TriangleTree::Hit& hit) const;
+  [[nodiscard]] geometry::TriangleTree::Hit nearest(const Vec3& y, double at_most,
+                                                    bool sided) const;
+  [[nodiscard]] Feature feature(int triangle, const geometry::TriangleRegion& region) const;
+  [[nodiscard]] bool behind(const Vec3& y, const geometry::TriangleTree::Hit& hit) const;
   /// @param round  Rounding of feature and point together [m].
   [[nodiscard]] SurfaceGap gap_of(const Feature& feature, const Vec3& y, double round) const;
   [[nodiscard]] Features features_near(const Vec3& point, double distance) const;
   [[nodiscard]] SurfaceGap sum(const Vec3& y, const SurfaceGap& nearest,
                                const GapQuery& question) const;
 
-  contact::Shape surface_;
-  contact::TriangleTree tree_;
+  geometry::Shape surface_;
+  geometry::TriangleTree tree_;
   /// By corner: mean normal of its triangles, weighted by their angles.
   std::vector<Vec3> outward_;
   bool bordered_ = false;
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/combined_gap.hpp>
 #include <polhode/surface_contact/rigid_surface.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -61,7 +61,7 @@ using contact::Dual;
 using contact::Placement;
 using contact::V3;
 
-RigidSurface::Gap over(const contact::Shape& solid, const Vec3& y) {
+RigidSurface::Gap over(const geometry::Shape& solid, const Vec3& y) {
   V3<Dual> x = contact::constant<Dual>(y);
   x.x.d[0] = x.y.d[1] = x.z.d[2] = 1.0;
   const Mat3 still = Mat3::Identity();
@@ -208,4 +208,4 @@ double RigidSurface::extent() const {
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

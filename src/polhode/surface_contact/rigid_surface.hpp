@@ -5,7 +5,7 @@
 
 #include <polhode/surface_contact/rigid_mesh.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// A rigid surface in contact with points of solids, in its own coordinates y.
 ///
@@ -29,7 +29,7 @@ struct RigidSurface {
   double radius = 0.0;       ///< [m]
   Vec3 half = Vec3::Zero();  ///< [m]
   double rounding = 0.0;     ///< Of the edges of boxes, cylinders and tubes [m].
-  std::shared_ptr<const contact::Shape> solid = nullptr;
+  std::shared_ptr<const geometry::Shape> solid = nullptr;
   std::shared_ptr<const RigidMesh> triangles = nullptr;
 
   using Gap = SurfaceGap;
@@ -48,4 +48,4 @@ struct RigidSurface {
   [[nodiscard]] Gap far_side(const Vec3& y) const;
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

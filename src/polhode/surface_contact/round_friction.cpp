@@ -2,7 +2,7 @@
 #include <polhode/surface_contact/nearest_weights.hpp>
 #include <polhode/surface_contact/round_friction.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -111,4 +111,4 @@ FourSlide round_friction(const FourMoves& moves, double alpha, const SurfaceLaw&
   return {sliding, end, pressure, tangent};
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -3,7 +3,7 @@
 
 #include <polhode/surface_contact/plane_friction.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Friction of a round section about a point, such as a cable, on a triangle: normal to the
 /// connection with the nearest point of the triangle, be that on its face, an edge or a corner.
@@ -12,4 +12,4 @@ namespace polhode {
 [[nodiscard]] FourSlide round_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
                                        double pressure, const Vec3& kept, bool tangent);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -2,7 +2,7 @@
 #include <polhode/math/hat.hpp>
 #include <polhode/surface_contact/slip_rates.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 std::array<Mat3, 4> slip_rates(const Vec3 (&x)[4], const Eigen::Vector4d& c, const Vec3& n,
                                const TwoEdges& edges) {
@@ -26,4 +26,4 @@ std::array<Mat3, 4> slip_rates(const Vec3 (&x)[4], const Eigen::Vector4d& c, con
   return rates;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

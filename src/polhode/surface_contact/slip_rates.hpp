@@ -5,7 +5,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Two edges among four points, by the numbers of their ends.
 using TwoEdges = std::array<int, 4>;
@@ -20,4 +20,4 @@ using TwoEdges = std::array<int, 4>;
 [[nodiscard]] std::array<Mat3, 4> slip_rates(const Vec3 (&x)[4], const Eigen::Vector4d& c,
                                              const Vec3& n, const TwoEdges& edges);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

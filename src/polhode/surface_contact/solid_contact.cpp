@@ -6,7 +6,7 @@
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/solid_contact_field.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 SolidContact::SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
                            const SurfaceLaw& law, const SolidContactStart& start, RoundLine cable)
@@ -159,4 +159,4 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
   return {};
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

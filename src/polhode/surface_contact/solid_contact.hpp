@@ -14,7 +14,7 @@
 #include <polhode/system/element_group.hpp>
 #include <polhode/system/surface_impacts.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Contact of points of a solid's surface with the triangles of another surface, or of its own: the
 /// potential Σ A β(d − g_tol), with d the distance of a point to the nearest triangle.
@@ -179,4 +179,4 @@ class SolidContact final : public ElementGroup,
   mutable Search search_;  ///< For the last history queried.
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

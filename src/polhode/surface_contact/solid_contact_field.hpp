@@ -4,7 +4,7 @@
 #include <polhode/surface_contact/plane_friction.hpp>
 #include <polhode/surface_contact/solid_contact.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Positions, or displacements, of nodes and of the vertices of a surface.
 struct SolidContact::Field {
@@ -46,4 +46,4 @@ struct SolidContact::Slide : FourSlide {
   int triangle = -1;  ///< Nearest at t_n.
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/solid_contact_field.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -87,4 +87,4 @@ SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1,
   return slide;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

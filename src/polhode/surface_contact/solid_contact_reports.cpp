@@ -8,7 +8,7 @@
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/solid_contact_field.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action& a,
                                               const Slide& slide, const PointMemory& memory) const {
@@ -184,4 +184,4 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
   return list;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -12,7 +12,7 @@
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/solid_contact_field.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -27,7 +27,7 @@ constexpr double kThrough = 0.5;
 constexpr double kShorter = 0.25;
 
 double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  return (p - contact::nearest_on_triangle(p, a, b, c).nearest).norm();
+  return (p - geometry::nearest_on_triangle(p, a, b, c).nearest).norm();
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void SolidContact::find(Search& s) const {
   std::vector<Vec3> vertices;
   for (const MeshPoint& v : surface_.vertices) vertices.push_back(place(v));
   const auto triangles = static_cast<int>(surface_.triangles.size());
-  std::vector<contact::Bounds> boxes;
+  std::vector<geometry::Bounds> boxes;
   double size = std::numeric_limits<double>::infinity();
   for (const auto& t : surface_.triangles) {
     const Vec3 &a = vertices[static_cast<std::size_t>(t[0])],
@@ -95,7 +95,7 @@ void SolidContact::find(Search& s) const {
     boxes.push_back({at.back() - half, at.back() + half});
   }
   std::vector<std::pair<int, int>> pairs, met;
-  contact::BroadPhase().find(boxes, pairs);
+  geometry::BroadPhase().find(boxes, pairs);
   for (const auto& [i, j] : pairs) {
     const int triangle = std::min(i, j), point = std::max(i, j) - triangles;
     if (triangle >= triangles || point < 0 || !may_meet(point, triangle)) continue;
@@ -294,4 +294,4 @@ std::vector<double> SolidContact::gaps_at_start() const {
   return list;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/solid_contact_field.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -108,4 +108,4 @@ void SolidContact::settled(const SurfaceImpact& impact, const ResolvedImpact& se
   SurfaceTotals::add_impulse(impact.normal, settled, dt, history + totals());
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 
 #include <polhode/surface_contact/solid_inside.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -36,7 +36,7 @@ std::optional<SurfaceOverlap> SolidInside::overlap(const Vec3& centre, double ra
   const Vec3 beyond = (tree_.low() - centre).cwiseMax(centre - tree_.high());
   if (beyond.maxCoeff() > radius) return {};
   const bool within = tree_.winding(centre) > 0;
-  const contact::TriangleTree::Hit hit =
+  const geometry::TriangleTree::Hit hit =
       tree_.nearest(centre, within ? std::numeric_limits<double>::infinity() : radius);
   if (hit.triangle < 0) return {};
   SurfaceOverlap found;
@@ -54,7 +54,7 @@ double SolidInside::distance_to_others(const Vec3& x, const std::array<int, 3>& 
   for (const auto& t : triangles_) {
     if (std::find_first_of(t.begin(), t.end(), face.begin(), face.end()) != t.end()) continue;
     const auto at = [&](std::size_t k) { return corners_[static_cast<std::size_t>(t[k])]; };
-    const Vec3 nearest = contact::nearest_on_triangle(x, at(0), at(1), at(2)).nearest;
+    const Vec3 nearest = geometry::nearest_on_triangle(x, at(0), at(1), at(2)).nearest;
     least = std::min(least, (x - nearest).norm());
   }
   return least;
@@ -83,4 +83,4 @@ double SolidInside::size() const {
   return *middle;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

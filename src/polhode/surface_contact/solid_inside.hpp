@@ -7,7 +7,7 @@
 #include <polhode/surface_contact/mesh_surface.hpp>
 #include <polhode/surface_contact/surface_law.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Interior of a solid at an instant, at any distance from its surface.
 class SolidInside {
@@ -33,7 +33,7 @@ class SolidInside {
 
   std::vector<Vec3> corners_;
   std::vector<std::array<int, 3>> triangles_;
-  contact::TriangleTree tree_;
+  geometry::TriangleTree tree_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

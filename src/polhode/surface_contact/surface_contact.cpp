@@ -6,7 +6,7 @@
 #include <polhode/contact_laws/stop_force.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -345,4 +345,4 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
   return {};
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -14,7 +14,7 @@
 #include <polhode/system/element_group.hpp>
 #include <polhode/system/surface_impacts.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Placement of the rigid surface.
 ///
@@ -172,4 +172,4 @@ class SurfaceContact final : public ElementGroup,
   std::vector<double> gaps_at_start_;  ///< Of each point, at the start [m].
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -4,7 +4,7 @@
 
 #include <polhode/surface_contact/surface_contact.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Adds the impacts of points. Both sides act at the position of the point, so that impulses have
 /// neither resultant nor moment. @eq{surface-turn}
@@ -55,4 +55,4 @@ void SurfaceContact::settled(const SurfaceImpact& impact, const ResolvedImpact& 
   SurfaceTotals::add_impulse(impact.normal, settled, dt, history + totals());
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -7,7 +7,7 @@
 #include <polhode/contact_laws/normal_law.hpp>
 #include <polhode/system/node_step.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Contact law of the surface of a solid with another one, per reference area.
 struct SurfaceLaw {
@@ -68,4 +68,4 @@ class SurfaceContactInterface {
   [[nodiscard]] virtual std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const = 0;
 };
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -9,7 +9,7 @@
 #include <polhode/solids/mesh/shapes.hpp>
 #include <polhode/surface_contact/surface_points.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -21,19 +21,21 @@ bool has(const std::vector<int>& ascending, int node) {
 
 /// Calls visit(nodes of the face, shape functions, dA) at every Gauss point.
 template <class Visit>
-void for_gauss_points(const LoadedFaces& faces, const std::vector<Vec3>& X, Visit&& visit) {
-  const CellShape& shape = cell_shape(faces.shape);
+void for_gauss_points(const solids::LoadedFaces& faces, const std::vector<Vec3>& X, Visit&& visit) {
+  const solids::CellShape& shape = solids::cell_shape(faces.shape);
   const auto n = static_cast<std::size_t>(shape.size());
   for (std::size_t first = 0; first < faces.nodes.size(); first += n) {
     const std::span<const int> own = std::span(faces.nodes).subspan(first, n);
-    for (const QuadraturePoint& q : face_rule(faces.shape)) {
-      const Vec N = shape_functions(shape, q.xi);
-      visit(own, N, q.weight * area_of(reference_jacobian(shape_gradients(shape, q.xi), own, X)));
+    for (const solids::QuadraturePoint& q : solids::face_rule(faces.shape)) {
+      const Vec N = solids::shape_functions(shape, q.xi);
+      visit(own, N,
+            q.weight *
+                area_of(solids::reference_jacobian(solids::shape_gradients(shape, q.xi), own, X)));
     }
   }
 }
 
-void add_nodes(SurfacePoints& s, const LoadedFaces& faces, const std::vector<Vec3>& X,
+void add_nodes(SurfacePoints& s, const solids::LoadedFaces& faces, const std::vector<Vec3>& X,
                const std::vector<int>& left_out) {
   std::map<int, double> area;
   for_gauss_points(faces, X, [&](std::span<const int> own, const Vec& N, double dA) {
@@ -50,9 +52,9 @@ void add_nodes(SurfacePoints& s, const LoadedFaces& faces, const std::vector<Vec
   }
 }
 
-void add_gauss_points(SurfacePoints& s, const LoadedFaces& faces, const std::vector<Vec3>& X,
-                      const std::vector<int>& left_out) {
-  s.nodes_per_point = cell_shape(faces.shape).size();
+void add_gauss_points(SurfacePoints& s, const solids::LoadedFaces& faces,
+                      const std::vector<Vec3>& X, const std::vector<int>& left_out) {
+  s.nodes_per_point = solids::cell_shape(faces.shape).size();
   for_gauss_points(faces, X, [&](std::span<const int> own, const Vec& N, double dA) {
     if (std::all_of(own.begin(), own.end(), [&](int node) { return has(left_out, node); })) return;
     SurfacePoints::Point p;
@@ -65,7 +67,7 @@ void add_gauss_points(SurfacePoints& s, const LoadedFaces& faces, const std::vec
 
 }  // namespace
 
-SurfacePoints surface_points(const std::string& where, const LoadedFaces& faces,
+SurfacePoints surface_points(const std::string& where, const solids::LoadedFaces& faces,
                              const std::vector<Vec3>& X, const std::vector<int>& left_out) {
   SurfacePoints s;
   const bool straight = faces.shape == "tri3" || faces.shape == "quad4";
@@ -75,8 +77,8 @@ SurfacePoints surface_points(const std::string& where, const LoadedFaces& faces,
   return s;
 }
 
-double median_edge(const LoadedFaces& faces, const std::vector<Vec3>& X) {
-  const auto n = static_cast<std::size_t>(cell_shape(faces.shape).size());
+double median_edge(const solids::LoadedFaces& faces, const std::vector<Vec3>& X) {
+  const auto n = static_cast<std::size_t>(solids::cell_shape(faces.shape).size());
   const std::size_t corners = faces.shape.starts_with("tri") ? 3 : 4;
   std::vector<double> lengths;
   for (std::size_t first = 0; first < faces.nodes.size(); first += n)
@@ -92,4 +94,4 @@ double median_edge(const LoadedFaces& faces, const std::vector<Vec3>& X) {
   return *middle;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -7,7 +7,7 @@
 
 #include <polhode/solids/loads/loaded_faces.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// Contact points of the surface of a solid, or of a cable: p = Σ N_a x_a, each with its tributary
 /// reference area.
@@ -35,11 +35,12 @@ struct SurfacePoints {
 /// @param left_out  Ascending numbers of nodes that are no points; a curved face is left out if all
 /// its nodes are among them.
 /// @throws InputError if no point remains.
-[[nodiscard]] SurfacePoints surface_points(const std::string& where, const LoadedFaces& faces,
+[[nodiscard]] SurfacePoints surface_points(const std::string& where,
+                                           const solids::LoadedFaces& faces,
                                            const std::vector<Vec3>& X,
                                            const std::vector<int>& left_out = {});
 
 /// Median length of the faces' edges, corner to corner [m].
-[[nodiscard]] double median_edge(const LoadedFaces& faces, const std::vector<Vec3>& X);
+[[nodiscard]] double median_edge(const solids::LoadedFaces& faces, const std::vector<Vec3>& X);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -8,7 +8,7 @@
 #include <polhode/surface_contact/line_stretch.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 namespace {
 
@@ -37,7 +37,8 @@ double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to)
   for (int i = 0; i < size(); ++i) {
     const std::span<const int> ends = nodes(i);
     const RoundLine::Span span{ends[0], ends[1], points_.points[static_cast<std::size_t>(i)].span};
-    most = std::min(most, polhode::free_of_stretch(span, points_.most_apart, from, to));
+    most = std::min(most,
+                    polhode::surface_contact::free_of_stretch(span, points_.most_apart, from, to));
   }
   return most;
 }
@@ -232,4 +233,4 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
   return list;
 }
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -5,7 +5,7 @@
 #include <polhode/system/body_contacts.hpp>
 #include <polhode/system/history_record.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact {
 
 /// History of a surface contact behind that of its points: sums since the start, then results of
 /// the last step. Its report needs no others.
@@ -71,4 +71,4 @@ struct SurfaceTotals {
 };
 static_assert(kNumbersOf<SurfaceTotals> == SurfaceTotals::kCount);
 
-}  // namespace polhode
+}  // namespace polhode::surface_contact

@@ -82,11 +82,4 @@ class ImpulsiveContacts {
 /// are suppressed [-].
 inline constexpr double kSlowReboundSteps = 2.0;
 
-/// Smallest normal speed of a point at the end of a step [m/s]; negative: it still approaches.
-/// Twice the mean speed of the step never exceeds what energy allows. @eq{nonsmooth-exit}
-/// @param w  At t_n, negative: approaching [m/s].
-/// @param slow  Slower rebounds are suppressed [m/s].
-[[nodiscard]] double least_exit_speed(double gap, double w, double restitution, double dt,
-                                      double slow);
-
 }  // namespace polhode

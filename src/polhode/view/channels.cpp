@@ -37,24 +37,24 @@ std::vector<std::string> labels_of(std::size_t size) {
 }
 
 /// Every channel of the results, in the order of the table.
-std::vector<Slice> slices_of(const ResultsReader& results) {
+std::vector<Slice> slices_of(const io::ResultsReader& results) {
   std::vector<Slice> list;
   const auto packed = [&](const char* group, const char* shown,
                           std::initializer_list<const char*> quantities) {
     const std::vector<std::string> names = results.names(std::string(group) + "/names");
     for (std::size_t k = 0; k < names.size(); ++k)
       for (const char* q : quantities) {
-        const ResultsReader::DataSet* set = results.find(format("{}/{}", group, q));
+        const io::ResultsReader::DataSet* set = results.find(format("{}/{}", group, q));
         if (set == nullptr) continue;
         const std::size_t size = set->size() / names.size();
         list.push_back({set->path, format("{}.{}.{}", shown, names[k], q), set->unit, k * size,
                         labels_of(size)});
       }
   };
-  packed(results::kPackedBodies, "bodies",
+  packed(io::results::kPackedBodies, "bodies",
          {"position", "orientation", "velocity", "angular_velocity"});
-  packed(results::kPackedJoints, "joints", {"force", "moment"});
-  const std::string joints = results::kPackedJoints, loads = results::kPackedLoads;
+  packed(io::results::kPackedJoints, "joints", {"force", "moment"});
+  const std::string joints = io::results::kPackedJoints, loads = io::results::kPackedLoads;
   const std::vector<std::string> joint_names = results.names(joints + "/names");
   const std::vector<std::int64_t> first = results.numbers(joints + "/first"),
                                   count = results.numbers(joints + "/count");
@@ -80,11 +80,11 @@ std::vector<Slice> slices_of(const ResultsReader& results) {
       at += size;
     }
   }
-  packed(results::kPackedContacts, "contacts",
+  packed(io::results::kPackedContacts, "contacts",
          {"gap", "normal_force", "force", "friction", "point", "points", "status", "impulse",
           "energy_lost"});
-  for (const ResultsReader::DataSet& set : results.data_sets()) {
-    if (set.path.rfind("/packed/", 0) == 0 || set.path == results::kTime) continue;
+  for (const io::ResultsReader::DataSet& set : results.data_sets()) {
+    if (set.path.rfind("/packed/", 0) == 0 || set.path == io::results::kTime) continue;
     if (set.path.find("/elements/") != std::string::npos ||
         set.path.find("/nodes/") != std::string::npos)
       continue;
@@ -102,7 +102,8 @@ std::string full_name(const Slice& slice, std::size_t k) {
 /// Reader with a cache: many columns come from one data set.
 class Columns {
  public:
-  explicit Columns(const ResultsReader& results) : results_(results), slices_(slices_of(results)) {}
+  explicit Columns(const io::ResultsReader& results)
+      : results_(results), slices_(slices_of(results)) {}
 
   std::vector<ChannelColumn> find(const std::string& name) {
     std::vector<ChannelColumn> found;
@@ -132,7 +133,7 @@ class Columns {
     return values;
   }
 
-  const ResultsReader& results_;
+  const io::ResultsReader& results_;
   std::vector<Slice> slices_;
   std::map<std::string, std::vector<double>> read_;
 };
@@ -149,11 +150,12 @@ constexpr std::array<const char*, 8> kColours = {"#1f5fa8", "#c8641b", "#2d8a4e"
 
 }  // namespace
 
-std::vector<ChannelColumn> channel_columns(const ResultsReader& results, const std::string& name) {
+std::vector<ChannelColumn> channel_columns(const io::ResultsReader& results,
+                                           const std::string& name) {
   return Columns(results).find(name);
 }
 
-std::vector<ChannelColumn> all_columns(const ResultsReader& results,
+std::vector<ChannelColumn> all_columns(const io::ResultsReader& results,
                                        const std::vector<std::string>& names) {
   Columns all(results);
   std::vector<ChannelColumn> columns;
@@ -165,18 +167,18 @@ std::vector<ChannelColumn> all_columns(const ResultsReader& results,
   return columns;
 }
 
-std::vector<std::string> channel_names(const ResultsReader& results) {
+std::vector<std::string> channel_names(const io::ResultsReader& results) {
   std::vector<std::string> names;
   for (const Slice& slice : slices_of(results)) names.push_back(slice.head);
   return names;
 }
 
-std::string channels_csv(const ResultsReader& results, const std::vector<std::string>& names) {
+std::string channels_csv(const io::ResultsReader& results, const std::vector<std::string>& names) {
   const std::vector<ChannelColumn> columns = all_columns(results, names);
   std::string text = "t [s]";
   for (const ChannelColumn& c : columns) text += "," + quoted(format("{} [{}]", c.name, c.unit));
   text += "\n";
-  const std::vector<double> t = results.read(results::kTime);
+  const std::vector<double> t = results.read(io::results::kTime);
   for (std::size_t f = 0; f < t.size(); ++f) {
     text += format("{}", t[f]);
     for (const ChannelColumn& c : columns) text += format(",{}", c.values[f]);
@@ -185,11 +187,11 @@ std::string channels_csv(const ResultsReader& results, const std::vector<std::st
   return text;
 }
 
-std::string channels_svg(const ResultsReader& results, const std::vector<std::string>& names,
+std::string channels_svg(const io::ResultsReader& results, const std::vector<std::string>& names,
                          const std::string& time_label) {
   constexpr double kWidth = 720.0, kHeight = 190.0, kLeft = 84.0, kTop = 34.0, kStep = 250.0;
   Columns all(results);
-  const std::vector<double> t = results.read(results::kTime);
+  const std::vector<double> t = results.read(io::results::kTime);
   const double begin = t.empty() ? 0.0 : t.front(), end = t.empty() ? 1.0 : t.back();
   std::string content;
   double y = kTop;
@@ -210,9 +212,9 @@ std::string channels_svg(const ResultsReader& results, const std::vector<std::st
     }
     if (!(high >= low)) low = 0.0, high = 1.0;
     const double room = high > low ? 0.06 * (high - low) : std::max(1e-12, 0.1 * std::abs(high));
-    SvgPanel panel({kLeft, y, kWidth - kLeft - 170.0, kHeight}, begin,
-                   end > begin ? end : begin + 1.0, low - room, high + room,
-                   format("{} [{}]", name, units));
+    io::SvgPanel panel({kLeft, y, kWidth - kLeft - 170.0, kHeight}, begin,
+                       end > begin ? end : begin + 1.0, low - room, high + room,
+                       format("{} [{}]", name, units));
     for (std::size_t i = 0; i < columns.size(); ++i) {
       panel.curve(t, columns[i].values, kColours[i]);
       const double line = y + 10.0 + 18.0 * static_cast<double>(i);
@@ -221,13 +223,13 @@ std::string channels_svg(const ResultsReader& results, const std::vector<std::st
           kWidth - 160.0, line - 4.0, kWidth - 140.0, kColours[i]);
       const std::string& full = columns[i].name;
       const std::string part = full.size() > name.size() ? full.substr(name.size() + 1) : full;
-      content += svg_text(kWidth - 134.0, line, part);
+      content += io::svg_text(kWidth - 134.0, line, part);
     }
     content += panel.text();
-    content += svg_text(kLeft + 200.0, y + kHeight + 34.0, time_label);
+    content += io::svg_text(kLeft + 200.0, y + kHeight + 34.0, time_label);
     y += kStep;
   }
-  return svg_page(kWidth, y, content);
+  return io::svg_page(kWidth, y, content);
 }
 
 }  // namespace polhode

@@ -19,23 +19,23 @@ struct ChannelColumn {
 /// contacts.a+b.gap, energy, energy.kinetic, and any other data set by its path with dots. A group
 /// means all of its channels, a channel all of its components.
 /// @throws InputError that names the nearest channel.
-[[nodiscard]] std::vector<ChannelColumn> channel_columns(const ResultsReader& results,
+[[nodiscard]] std::vector<ChannelColumn> channel_columns(const io::ResultsReader& results,
                                                          const std::string& name);
 
 /// Columns of channels in order; of all of them if none is named. @throws InputError
-[[nodiscard]] std::vector<ChannelColumn> all_columns(const ResultsReader& results,
+[[nodiscard]] std::vector<ChannelColumn> all_columns(const io::ResultsReader& results,
                                                      const std::vector<std::string>& names);
 
 /// Names of all channels in the results: motion, joints, loads, contacts, energy, momentum, solver.
-[[nodiscard]] std::vector<std::string> channel_names(const ResultsReader& results);
+[[nodiscard]] std::vector<std::string> channel_names(const io::ResultsReader& results);
 
 /// Table of channels with the time first. Numbers are exact when read back.
-[[nodiscard]] std::string channels_csv(const ResultsReader& results,
+[[nodiscard]] std::string channels_csv(const io::ResultsReader& results,
                                        const std::vector<std::string>& names);
 
 /// Diagram of channels over time: a panel for each name, at most eight curves in each.
 /// @param time_label  Name of the abscissa.
-[[nodiscard]] std::string channels_svg(const ResultsReader& results,
+[[nodiscard]] std::string channels_svg(const io::ResultsReader& results,
                                        const std::vector<std::string>& names,
                                        const std::string& time_label);
 

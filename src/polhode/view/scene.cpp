@@ -27,8 +27,8 @@ bool starts_with(const std::string& text, const char* prefix) { return text.rfin
 
 /// Fields of solids are added by add_solids().
 bool is_channel(const std::string& path) {
-  if (path == results::kTime) return false;
-  if (!starts_with(path, results::kSolids)) return true;
+  if (path == io::results::kTime) return false;
+  if (!starts_with(path, io::results::kSolids)) return true;
   return path.find("/interfaces/") != std::string::npos;
 }
 
@@ -41,14 +41,14 @@ bool is_later(const std::string& path) {
 }
 
 /// Numbers per frame of all data used by the page.
-std::size_t frame_size(const ResultsReader& results) {
+std::size_t frame_size(const io::ResultsReader& results) {
   std::size_t size = 0;
-  for (const ResultsReader::DataSet& set : results.data_sets())
-    if (set.path != results::kTime) size += set.size();
+  for (const io::ResultsReader::DataSet& set : results.data_sets())
+    if (set.path != io::results::kTime) size += set.size();
   return size;
 }
 
-std::size_t choose_every(const ResultsReader& results, const SceneOptions& options) {
+std::size_t choose_every(const io::ResultsReader& results, const SceneOptions& options) {
   const std::size_t frames = results.frames();
   if (frames == 0) return 1;
   const std::size_t bytes = std::max<std::size_t>(1, 4 * frame_size(results));
@@ -59,8 +59,8 @@ std::size_t choose_every(const ResultsReader& results, const SceneOptions& optio
 
 /// Change of total energy, minus work input, plus dissipation, over the largest energy: in double
 /// precision, because 32 bits are not accurate enough.
-std::vector<double> energy_drift(const ResultsReader& results, std::size_t every) {
-  const std::string group = results::kEnergy;
+std::vector<double> energy_drift(const io::ResultsReader& results, std::size_t every) {
+  const std::string group = io::results::kEnergy;
   for (const char* name : {"/kinetic", "/potential", "/total", "/put_in", "/dissipated"})
     if (results.find(group + name) == nullptr) return {};
   const std::vector<double> kinetic = results.read(group + "/kinetic", every),
@@ -88,8 +88,9 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-std::string model_text(const ResultsReader& results) {
-  const std::vector<std::string> text = results.names(std::string(results::kProvenance) + "/model");
+std::string model_text(const io::ResultsReader& results) {
+  const std::vector<std::string> text =
+      results.names(std::string(io::results::kProvenance) + "/model");
   return text.empty() ? "" : text[0];
 }
 
@@ -112,7 +113,7 @@ Json ChunkList::integers(std::span<const std::uint32_t> values, std::size_t widt
   return add(pack_integers(values, width), values.size(), width, "u");
 }
 
-Json ChunkList::surface(const TriangleSurface& surface) {
+Json ChunkList::surface(const geometry::TriangleSurface& surface) {
   std::vector<double> points;
   for (const Vec3& p : surface.points) points.insert(points.end(), {p[0], p[1], p[2]});
   std::vector<std::uint32_t> corners;
@@ -122,28 +123,28 @@ Json ChunkList::surface(const TriangleSurface& surface) {
   return {{"points", floats(points, 3)}, {"triangles", integers(corners, 3)}};
 }
 
-Model model_of_results(const ResultsReader& results, const std::string& folder) {
+Model model_of_results(const io::ResultsReader& results, const std::string& folder) {
   namespace fs = std::filesystem;
-  const std::string group = results::kProvenance, text = model_text(results);
+  const std::string group = io::results::kProvenance, text = model_text(results);
   const std::string name = results.attribute(group, "model_file");
-  const Overrides overrides = lines_of(results.attribute(group, "overrides"));
+  const io::Overrides overrides = lines_of(results.attribute(group, "overrides"));
   const fs::path here = fs::absolute(folder);
   try {
-    return read_model_text(text, (here.parent_path() / name).string(), overrides);
+    return io::read_model_text(text, (here.parent_path() / name).string(), overrides);
   } catch (const std::exception&) {
-    return read_model_text(text, (here / name).string(), overrides);
+    return io::read_model_text(text, (here / name).string(), overrides);
   }
 }
 
-SceneData make_scene(const ResultsReader& results, const Model* model,
+SceneData make_scene(const io::ResultsReader& results, const Model* model,
                      const SceneOptions& options) {
   SceneData scene;
   scene.every = choose_every(results, options);
   ChunkList chunks(scene);
-  const std::vector<double> time = results.read(results::kTime, scene.every);
+  const std::vector<double> time = results.read(io::results::kTime, scene.every);
   scene.frames = time.size();
   scene.title = results.attribute("/", "title");
-  const std::string group = results::kProvenance;
+  const std::string group = io::results::kProvenance;
   Json manifest = {{"format", "polhode scene"},
                    {"version", 1},
                    {"title", scene.title},
@@ -168,9 +169,9 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
   add_connections(manifest, results, model, options);
   add_solids(manifest, chunks, results, scene.every);
   add_lines(manifest, results, model);
-  manifest["contacts"] = results.names(std::string(results::kPackedContacts) + "/names");
+  manifest["contacts"] = results.names(std::string(io::results::kPackedContacts) + "/names");
   Json& channels = manifest["channels"] = Json::array();
-  for (const ResultsReader::DataSet& set : results.data_sets())
+  for (const io::ResultsReader::DataSet& set : results.data_sets())
     if (is_channel(set.path) && set.size() > 0) {
       if (is_later(set.path)) chunks.later();
       channels.push_back(

@@ -35,11 +35,11 @@ struct SceneData {
 /// Model of the results, from the text stored in them. Mesh files are searched in `folder` and its
 /// parent.
 /// @throws ModelErrors, FileError, InputError
-[[nodiscard]] Model model_of_results(const ResultsReader& results, const std::string& folder);
+[[nodiscard]] Model model_of_results(const io::ResultsReader& results, const std::string& folder);
 
 /// @param model  From model_of_results(); null: bodies are drawn as small cubes.
 /// @throws FileError
-[[nodiscard]] SceneData make_scene(const ResultsReader& results, const Model* model,
+[[nodiscard]] SceneData make_scene(const io::ResultsReader& results, const Model* model,
                                    const SceneOptions& options = {});
 
 /// A single HTML file that needs no network and no server.

@@ -23,7 +23,7 @@ int segments_for(std::size_t bodies) { return bodies > 2000 ? 10 : bodies > 200 
 double thinnest(const BodySpec& body, double size) {
   constexpr double kThin = 0.06, kThick = 0.2, kOfAll = 0.004;
   if (body.point_mass) return kThin;
-  const Vec3 moments = principal_axes(body.inertia).moments;
+  const Vec3 moments = geometry::principal_axes(body.inertia).moments;
   const double length = std::sqrt(6.0 / body.mass * (moments.sum() - 2.0 * moments[0]));
   return std::clamp(kOfAll * size / length, kThin, kThick);
 }
@@ -101,7 +101,7 @@ Json parts_of(const BodySpec& body, double size, int segments, Meshes& meshes) {
     key += format(" {}", body.mass);
     parts.push_back(
         {{"mesh", meshes.index(key, "inertia",
-                               [&] { return inertia_box(body, size, thinnest(body, size)); })},
+                               [&] { return io::inertia_box(body, size, thinnest(body, size)); })},
          {"p", {0, 0, 0}}});
   }
   return parts;
@@ -109,8 +109,8 @@ Json parts_of(const BodySpec& body, double size, int segments, Meshes& meshes) {
 
 }  // namespace
 
-void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results, const Model* model,
-                const SceneOptions& options) {
+void add_bodies(Json& manifest, ChunkList& chunks, const io::ResultsReader& results,
+                const Model* model, const SceneOptions& options) {
   manifest["meshes"] = Json::array();
   Json& bodies = manifest["bodies"] = Json::array();
   Meshes meshes(manifest["meshes"], chunks);
@@ -122,7 +122,7 @@ void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results,
     for (std::size_t i = 0; i < model->bodies.size(); ++i) index[model->bodies[i].name] = i;
   }
   const std::vector<std::string> names =
-      results.names(std::string(results::kPackedBodies) + "/names");
+      results.names(std::string(io::results::kPackedBodies) + "/names");
   const int segments = segments_for(names.size());
   for (const std::string& name : names) {
     Json entry = {{"name", name}};
@@ -148,9 +148,9 @@ void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results,
   }
 }
 
-void add_connections(Json& manifest, const ResultsReader& results, const Model* model,
+void add_connections(Json& manifest, const io::ResultsReader& results, const Model* model,
                      const SceneOptions& options) {
-  const std::string packed = results::kPackedJoints, packed_loads = results::kPackedLoads;
+  const std::string packed = io::results::kPackedJoints, packed_loads = io::results::kPackedLoads;
   Json& joints = manifest["joints"] = Json::array();
   const std::vector<std::string> names = results.names(packed + "/names"),
                                  types = results.names(packed + "/types");
@@ -209,9 +209,9 @@ void add_connections(Json& manifest, const ResultsReader& results, const Model* 
   }
 }
 
-void add_lines(Json& manifest, const ResultsReader& results, const Model* model) {
+void add_lines(Json& manifest, const io::ResultsReader& results, const Model* model) {
   Json& beams = manifest["beams"] = Json::array();
-  for (const std::string& name : results.groups(results::kBeams)) {
+  for (const std::string& name : results.groups(io::results::kBeams)) {
     Json entry = {{"name", name}};
     if (model != nullptr)
       for (const BeamSpec& beam : model->beams)
@@ -224,7 +224,7 @@ void add_lines(Json& manifest, const ResultsReader& results, const Model* model)
     beams.push_back(std::move(entry));
   }
   Json& cables = manifest["cables"] = Json::array();
-  for (const std::string& name : results.groups(results::kCables)) {
+  for (const std::string& name : results.groups(io::results::kCables)) {
     Json entry = {{"name", name}};
     if (model != nullptr)
       for (const CableLineSpec& cable : model->cables)

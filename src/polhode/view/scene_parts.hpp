@@ -25,7 +25,7 @@ class ChunkList {
   /// {"c": index, "n": rows, "w": width, "t": "f" or "u"}
   Json floats(std::span<const double> values, std::size_t width);
   Json integers(std::span<const std::uint32_t> values, std::size_t width);
-  Json surface(const TriangleSurface& surface);
+  Json surface(const geometry::TriangleSurface& surface);
 
  private:
   Json add(std::string bytes, std::size_t count, std::size_t width, const char* type);
@@ -38,17 +38,19 @@ class ChunkList {
 
 /// Mesh of a solid as stored in the results, by the path of its group; only the topology is filled
 /// in.
-[[nodiscard]] Mesh mesh_of_results(const ResultsReader& results, const std::string& group);
+[[nodiscard]] solids::Mesh mesh_of_results(const io::ResultsReader& results,
+                                           const std::string& group);
 
 /// Adds "meshes" and "bodies" to the manifest: each different shape once.
-void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results, const Model* model,
-                const SceneOptions& options);
+void add_bodies(Json& manifest, ChunkList& chunks, const io::ResultsReader& results,
+                const Model* model, const SceneOptions& options);
 /// Adds "joints" and "loads".
-void add_connections(Json& manifest, const ResultsReader& results, const Model* model,
+void add_connections(Json& manifest, const io::ResultsReader& results, const Model* model,
                      const SceneOptions& options);
 /// Adds "solids": outer faces, edges of elements, and fields of outer nodes and elements.
-void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results, std::size_t every);
+void add_solids(Json& manifest, ChunkList& chunks, const io::ResultsReader& results,
+                std::size_t every);
 /// Adds "beams" and "cables".
-void add_lines(Json& manifest, const ResultsReader& results, const Model* model);
+void add_lines(Json& manifest, const io::ResultsReader& results, const Model* model);
 
 }  // namespace polhode

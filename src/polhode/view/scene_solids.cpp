@@ -9,17 +9,17 @@
 
 namespace polhode {
 
-Mesh mesh_of_results(const ResultsReader& results, const std::string& group) {
-  Mesh mesh;
+solids::Mesh mesh_of_results(const io::ResultsReader& results, const std::string& group) {
+  solids::Mesh mesh;
   const std::vector<std::int64_t> nodes = results.numbers(group + "/elements/connectivity"),
                                   offsets = results.numbers(group + "/elements/offsets"),
                                   types = results.numbers(group + "/elements/vtk_type");
   mesh.nodes.resize(results.vectors(group + "/nodes/reference").size() / 3);
   for (std::size_t e = 0; e < types.size(); ++e) {
-    const auto shape =
-        std::find_if(cell_shapes().begin(), cell_shapes().end(),
-                     [&](const CellShape& s) { return s.vtk == static_cast<int>(types[e]); });
-    if (shape == cell_shapes().end()) continue;
+    const auto shape = std::find_if(
+        solids::cell_shapes().begin(), solids::cell_shapes().end(),
+        [&](const solids::CellShape& s) { return s.vtk == static_cast<int>(types[e]); });
+    if (shape == solids::cell_shapes().end()) continue;
     if (mesh.blocks.empty() || mesh.blocks.back().type != shape->name)
       mesh.blocks.push_back({shape->name, {}});
     for (std::int64_t k = offsets[e]; k < offsets[e + 1]; ++k)
@@ -41,7 +41,7 @@ std::vector<std::array<int, 3>> triangles_of(const std::string& type) {
 }
 
 /// Edges of a face in its own node numbers, quadratic ones in two segments.
-std::vector<std::array<int, 2>> edges_of(const CellShape& shape) {
+std::vector<std::array<int, 2>> edges_of(const solids::CellShape& shape) {
   std::vector<std::array<int, 2>> list;
   const int corners = shape.corners;
   for (int k = 0; k < corners; ++k) {
@@ -63,13 +63,13 @@ struct Outside {
   std::vector<std::uint32_t> owners;  ///< Elements of the triangles, by number here.
 };
 
-Outside outside_of(const Mesh& mesh) {
+Outside outside_of(const solids::Mesh& mesh) {
   Outside out;
   std::vector<int> number(mesh.nodes.size(), -1),
       element(static_cast<std::size_t>(mesh.element_count()), -1);
   std::set<std::pair<std::uint32_t, std::uint32_t>> known;
-  for (const FaceBlock& block : boundary(mesh).blocks) {
-    const CellShape& shape = block.shape();
+  for (const solids::FaceBlock& block : solids::boundary(mesh).blocks) {
+    const solids::CellShape& shape = block.shape();
     const auto size = static_cast<std::size_t>(shape.size());
     const auto triangles = triangles_of(block.type);
     const auto edges = edges_of(shape);
@@ -118,12 +118,12 @@ std::vector<double> seen_rows(const std::vector<double>& values, std::size_t all
 
 }  // namespace
 
-void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results,
+void add_solids(Json& manifest, ChunkList& chunks, const io::ResultsReader& results,
                 std::size_t every) {
   Json& solids = manifest["solids"] = Json::array();
-  for (const std::string& name : results.groups(results::kSolids)) {
-    const std::string group = format("{}/{}", results::kSolids, name);
-    const Mesh mesh = mesh_of_results(results, group);
+  for (const std::string& name : results.groups(io::results::kSolids)) {
+    const std::string group = format("{}/{}", io::results::kSolids, name);
+    const solids::Mesh mesh = mesh_of_results(results, group);
     const Outside outside = outside_of(mesh);
     Json entry = {{"name", name},
                   {"nodes", mesh.nodes.size()},
@@ -141,7 +141,7 @@ void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results,
                                                                         outside.nodes},
           {"elements", static_cast<std::size_t>(mesh.element_count()), outside.elements}}) {
       const std::string prefix = format("{}/{}/", group, part);
-      for (const ResultsReader::DataSet& set : results.data_sets()) {
+      for (const io::ResultsReader::DataSet& set : results.data_sets()) {
         if (set.path.rfind(prefix, 0) != 0 || set.dims.empty()) continue;
         const std::size_t width = set.size() / std::max<std::size_t>(1, all);
         const bool later = part[0] == 'e';

@@ -20,10 +20,10 @@ namespace {
 constexpr std::uint8_t kVtkLine = 3, kVtkTriangle = 5;
 
 /// Quantities with a value for each of `entries` points or cells, whose paths begin with `prefix`.
-std::vector<VtkHdfField> fields_in(const ResultsReader& results, const std::string& prefix,
+std::vector<VtkHdfField> fields_in(const io::ResultsReader& results, const std::string& prefix,
                                    std::size_t entries, const std::string& but = "") {
   std::vector<VtkHdfField> fields;
-  for (const ResultsReader::DataSet& set : results.data_sets()) {
+  for (const io::ResultsReader::DataSet& set : results.data_sets()) {
     if (set.path.rfind(prefix, 0) != 0 || set.dims.empty() || set.dims[0] != entries) continue;
     const std::string name = set.path.substr(prefix.size());
     if (name == but || name.find('/') != std::string::npos) continue;
@@ -39,14 +39,14 @@ std::vector<double> moved(const std::vector<double>& start, std::vector<double> 
   return changes;
 }
 
-void add_solid(VtkHdfFile& file, const ResultsReader& results, const std::string& name) {
-  const std::string group = format("{}/{}", results::kSolids, name);
-  const Mesh mesh = mesh_of_results(results, group);
+void add_solid(VtkHdfFile& file, const io::ResultsReader& results, const std::string& name) {
+  const std::string group = format("{}/{}", io::results::kSolids, name);
+  const solids::Mesh mesh = mesh_of_results(results, group);
   VtkHdfGrid grid;
   grid.name = name;
   grid.points = mesh.nodes.size();
-  for (const ElementBlock& block : mesh.blocks) {
-    const std::vector<std::size_t> order = vtk_order(block.shape());
+  for (const solids::ElementBlock& block : mesh.blocks) {
+    const std::vector<std::size_t> order = io::vtk_order(block.shape());
     for (std::size_t at = 0; at < block.nodes.size(); at += order.size()) {
       std::vector<std::int64_t> corners;
       for (const std::size_t k : order) corners.push_back(block.nodes[at + k]);
@@ -63,9 +63,9 @@ void add_solid(VtkHdfFile& file, const ResultsReader& results, const std::string
 }
 
 /// Adds a beam or cable, with a line for each element.
-void add_line(VtkHdfFile& file, const ResultsReader& results, const std::string& name,
+void add_line(VtkHdfFile& file, const io::ResultsReader& results, const std::string& name,
               const std::string& position, const std::string& nodes, const std::string& elements) {
-  const ResultsReader::DataSet* set = results.find(position);
+  const io::ResultsReader::DataSet* set = results.find(position);
   if (set == nullptr || set->dims.empty() || set->dims[0] < 2) return;
   VtkHdfGrid grid;
   grid.name = name;
@@ -79,12 +79,12 @@ void add_line(VtkHdfFile& file, const ResultsReader& results, const std::string&
 }
 
 /// Surfaces of bodies, by their indices in the results.
-using Surfaces = std::vector<std::pair<std::size_t, TriangleSurface>>;
+using Surfaces = std::vector<std::pair<std::size_t, geometry::TriangleSurface>>;
 
 /// Adds a grid of surfaces that are moved with their bodies.
-void add_surfaces(VtkHdfFile& file, const ResultsReader& results, const std::string& name,
+void add_surfaces(VtkHdfFile& file, const io::ResultsReader& results, const std::string& name,
                   const Surfaces& surfaces, std::size_t bodies) {
-  const std::string group = results::kPackedBodies;
+  const std::string group = io::results::kPackedBodies;
   VtkHdfGrid grid;
   grid.name = name;
   std::vector<double> owners;
@@ -134,19 +134,19 @@ void add_surfaces(VtkHdfFile& file, const ResultsReader& results, const std::str
 }
 
 /// Adds a grid for each body, or one for all if there are many.
-void add_body_surfaces(VtkHdfFile& file, const ResultsReader& results, const Model& model) {
+void add_body_surfaces(VtkHdfFile& file, const io::ResultsReader& results, const Model& model) {
   const std::vector<std::string> names =
-      results.names(std::string(results::kPackedBodies) + "/names");
+      results.names(std::string(io::results::kPackedBodies) + "/names");
   double size = 0.0;
   for (const BodySpec& a : model.bodies)
     size = std::max(size, (a.position - model.bodies[0].position).norm());
   Surfaces surfaces;
-  for (BodyPicture& picture : body_pictures(model, size > 0.0 ? size : 1.0)) {
+  for (io::BodyPicture& picture : io::body_pictures(model, size > 0.0 ? size : 1.0)) {
     const auto at = std::find(names.begin(), names.end(), picture.name);
     if (at != names.end() && !picture.surface.points.empty())
       surfaces.emplace_back(at - names.begin(), std::move(picture.surface));
   }
-  if (surfaces.size() > static_cast<std::size_t>(results::kMaxNamed)) {
+  if (surfaces.size() > static_cast<std::size_t>(io::results::kMaxNamed)) {
     add_surfaces(file, results, "bodies", surfaces, names.size());
     return;
   }
@@ -156,19 +156,20 @@ void add_body_surfaces(VtkHdfFile& file, const ResultsReader& results, const Mod
 
 }  // namespace
 
-void write_vtkhdf(const ResultsReader& results, const Model* model, const std::string& path) {
-  VtkHdfFile file(path, results.read(results::kTime));
+void write_vtkhdf(const io::ResultsReader& results, const Model* model, const std::string& path) {
+  VtkHdfFile file(path, results.read(io::results::kTime));
   if (model != nullptr &&
-      results.find(std::string(results::kPackedBodies) + "/position") != nullptr)
+      results.find(std::string(io::results::kPackedBodies) + "/position") != nullptr)
     add_body_surfaces(file, results, *model);
-  for (const std::string& name : results.groups(results::kSolids)) add_solid(file, results, name);
-  for (const std::string& name : results.groups(results::kBeams)) {
-    const std::string group = format("{}/{}", results::kBeams, name);
+  for (const std::string& name : results.groups(io::results::kSolids))
+    add_solid(file, results, name);
+  for (const std::string& name : results.groups(io::results::kBeams)) {
+    const std::string group = format("{}/{}", io::results::kBeams, name);
     add_line(file, results, name, group + "/nodes/position", group + "/nodes/",
              group + "/elements/");
   }
-  for (const std::string& name : results.groups(results::kCables)) {
-    const std::string group = format("{}/{}", results::kCables, name);
+  for (const std::string& name : results.groups(io::results::kCables)) {
+    const std::string group = format("{}/{}", io::results::kCables, name);
     add_line(file, results, name, group + "/position", group + "/", group + "/");
   }
   if (file.grids() == 0)

@@ -16,6 +16,6 @@ namespace polhode {
 /// surfaces are one grid, "bodies". Nodes of beams and cables are no bodies here.
 /// @param model  From model_of_results(); null: bodies are left out, as their shapes are not known.
 /// @throws FileError if the file cannot be written; InputError if there is nothing to show.
-void write_vtkhdf(const ResultsReader& results, const Model* model, const std::string& path);
+void write_vtkhdf(const io::ResultsReader& results, const Model* model, const std::string& path);
 
 }  // namespace polhode

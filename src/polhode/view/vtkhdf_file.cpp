@@ -12,10 +12,11 @@ namespace polhode {
 namespace {
 
 namespace fs = std::filesystem;
-using hdf5::Id;
+using io::hdf5::Id;
 
 void check_written(bool good, const std::string& path) {
-  if (!good) throw FileError(path, "cannot be written", "Free disk space, or name another file");
+  if (!good)
+    throw io::FileError(path, "cannot be written", "Free disk space, or name another file");
 }
 
 Id new_group(hid_t parent, const std::string& name, bool ordered = false) {

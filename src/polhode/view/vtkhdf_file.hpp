@@ -56,7 +56,7 @@ class VtkHdfFile {
 
   std::string path_, unfinished_;
   std::vector<double> times_;
-  hdf5::Id file_, root_, assembly_;
+  io::hdf5::Id file_, root_, assembly_;
   std::set<std::string> names_;
 };
 

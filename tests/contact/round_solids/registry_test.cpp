@@ -24,19 +24,19 @@ constexpr double kRounded = 0.01;
 class EveryRoundSolid : public testing::TestWithParam<const RoundSolid*> {
  protected:
   const RoundSolid& solid_ = *GetParam();
-  const ShapeKind* kind_ = find_shape_kind(solid_.name);
+  const geometry::ShapeKind* kind_ = geometry::find_shape_kind(solid_.name);
   const std::vector<double> sizes_ =
       kind_ ? test::fitting_sizes(*kind_, {0.8, 0.9, 0.6}) : std::vector<double>{};
-  const ShapePlace place_{{0.05, -0.03, 0.02}, Random(3).frame()};
+  const geometry::ShapePlace place_{{0.05, -0.03, 0.02}, Random(3).frame()};
 
   void SetUp() override {
     ASSERT_NE(kind_, nullptr) << "the kind is not one of the model file";
     ASSERT_FALSE(sizes_.empty()) << "the kind needs a longer list of lengths";
   }
-  [[nodiscard]] Shape shape() const { return solid_.shape("shape", sizes_, place_, 0.0); }
+  [[nodiscard]] geometry::Shape shape() const { return solid_.shape("shape", sizes_, place_, 0.0); }
   /// Points of the surface, in coordinates of the body; chords of the circles are below 1e-4.
   [[nodiscard]] std::vector<Vec3> points() const {
-    std::vector<Vec3> list = shape_surface(*kind_, sizes_, 256).points;
+    std::vector<Vec3> list = geometry::shape_surface(*kind_, sizes_, 256).points;
     for (Vec3& x : list) x = place_.origin + place_.axes * x;
     return list;
   }
@@ -47,7 +47,7 @@ Placement<double> at_rest(const Mat3& axes, int first) { return {Vec3::Zero(), a
 /// The sharp edges of the triangles stick out of the rounded ones, at an apex by some roundings. A
 /// rounded ellipsoid is slightly larger than its size.
 TEST_P(EveryRoundSolid, HasTheVerticesOfItsMeshOnItsSurface) {
-  const Shape s = shape();
+  const geometry::Shape s = shape();
   const Mat3 still = Mat3::Identity();
   for (const Vec3& x : points()) {
     const double distance = solid_.plain.over(v3(x), 0.0, s, at_rest(still, 6)).distance;
@@ -59,7 +59,7 @@ TEST_P(EveryRoundSolid, HasTheVerticesOfItsMeshOnItsSurface) {
 }
 
 TEST_P(EveryRoundSolid, HasChordsFromItsCentreToItsCore) {
-  const Shape s = shape();
+  const geometry::Shape s = shape();
   const Mat3 still = Mat3::Identity();
   for (int k = 0; k < 3; ++k)
     for (const double sign : {-1.0, 1.0})
@@ -74,7 +74,7 @@ TEST_P(EveryRoundSolid, HasChordsFromItsCentreToItsCore) {
 }
 
 TEST_P(EveryRoundSolid, HasTheExtentOfItsMesh) {
-  const Shape s = shape();
+  const geometry::Shape s = shape();
   const std::vector<Vec3> list = points();
   Random random(5);
   for (int trial = 0; trial < 100; ++trial) {
@@ -88,7 +88,7 @@ TEST_P(EveryRoundSolid, HasTheExtentOfItsMesh) {
 
 // @tests{contact-round-support}
 TEST_P(EveryRoundSolid, HasOneSupportPointAndItsDerivative) {
-  const Shape s = shape();
+  const geometry::Shape s = shape();
   V3<double> axes[3];
   for (int k = 0; k < 3; ++k) axes[k] = v3(Vec3::Unit(k));
   Random random(6);
@@ -111,7 +111,7 @@ TEST_P(EveryRoundSolid, HasOneSupportPointAndItsDerivative) {
 
 /// Representation of a round solid elsewhere: corners, flat ends and, without these, an ellipsoid.
 TEST_P(EveryRoundSolid, TouchesAPlaneWithItsLowestPoint) {
-  const Shape s = shape(), floor = plane();
+  const geometry::Shape s = shape(), floor = geometry::plane();
   const std::vector<Vec3> list = points();
   Random random(7);
   for (int trial = 0; trial < 50; ++trial) {

@@ -36,8 +36,8 @@ std::vector<fs::path> models(const char* folder) {
 
 fs::path beside(fs::path path, const char* extension) { return path.replace_extension(extension); }
 
-Overrides overrides_of(const fs::path& path) {
-  Overrides overrides;
+io::Overrides overrides_of(const fs::path& path) {
+  io::Overrides overrides;
   std::istringstream lines(content(beside(path, ".set")));
   for (std::string line; std::getline(lines, line);) overrides.push_back(line);
   return overrides;
@@ -65,9 +65,9 @@ TEST(Corpus, InvalidModelsAreRefusedWithTheirMessages) {
     SCOPED_TRACE(path.filename().string());
     try {
       const Model model =
-          read_model_text(content(path), path.filename().string(), overrides_of(path));
+          io::read_model_text(content(path), path.filename().string(), overrides_of(path));
       ADD_FAILURE() << "was read without an error";
-    } catch (const ModelErrors& errors) {
+    } catch (const io::ModelErrors& errors) {
       EXPECT_EQ(errors.text() + "\n", content(beside(path, ".txt")));
     }
   }
@@ -76,7 +76,7 @@ TEST(Corpus, InvalidModelsAreRefusedWithTheirMessages) {
 TEST(Corpus, GoodModelsAreRead) {
   for (const fs::path& path : models("good")) {
     SCOPED_TRACE(path.filename().string());
-    EXPECT_NO_THROW(EXPECT_FALSE(read_model(path).bodies.empty()));
+    EXPECT_NO_THROW(EXPECT_FALSE(io::read_model(path).bodies.empty()));
   }
 }
 
@@ -111,8 +111,8 @@ TEST(Corpus, DamagedModelsAreReadOrRefused) {
         }
       }
       try {
-        static_cast<void>(read_model_text(text, "damaged.yaml"));
-      } catch (const ModelErrors& errors) {
+        static_cast<void>(io::read_model_text(text, "damaged.yaml"));
+      } catch (const io::ModelErrors& errors) {
         EXPECT_FALSE(errors.diagnostics().empty());
       }
     }

@@ -38,7 +38,7 @@ output:
 }  // namespace
 
 TEST(ReadBeams, MakesBodiesSectionsAndJoints) {
-  const Model m = read_model_text(kModel, "mast.yaml");
+  const Model m = io::read_model_text(kModel, "mast.yaml");
   ASSERT_EQ(m.bodies.size(), 6u);
   EXPECT_EQ(m.bodies[1].name, "mast.0");
   EXPECT_LT((m.bodies[5].position - Vec3(0, 0, 1.11)).norm(), 1e-15);
@@ -64,7 +64,7 @@ TEST(ReadBeams, MakesBodiesSectionsAndJoints) {
 }
 
 TEST(ReadBeams, MakesModelsThatRun) {
-  Simulation s(read_model_text(kModel, "mast.yaml"));
+  Simulation s(io::read_model_text(kModel, "mast.yaml"));
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_LT(r.energy_drift, 1e-10);
@@ -75,7 +75,7 @@ TEST(ReadBeams, MakesModelsThatRun) {
 // Rigid bodies, a solid with viscosity, a beam and a cable in one model.
 TEST(ReadBeams, CanBeCombinedWithSolidsAndBodies) {
   const std::string path = test::source_dir() + "/tests/corpus/good/plate_and_mast.yaml";
-  Model model = read_model(path, {"analysis.duration=30 ms"});
+  Model model = io::read_model(path, {"analysis.duration=30 ms"});
   model.output.every = 30e-3;
   Simulation s(std::move(model));
   const RunSummary r = s.run();
@@ -108,7 +108,7 @@ solids:
 analysis: {duration: 0.4, step: 4 ms, rho_inf: 0.5}
 output: {every: 0.4, probes: {face: {solid: block, interface: rod.end}}}
 )";
-  const Model model = read_model_text(kText, "hanging.yaml");
+  const Model model = io::read_model_text(kText, "hanging.yaml");
   EXPECT_EQ(model.output.probes[0].reaction_of, "rod.3");
   Simulation s(model);
   const RunSummary r = s.run();
@@ -123,7 +123,7 @@ TEST(ReadBeams, StartsBeamsWithTheVelocityOfTheirBody) {
   std::string text = kModel;
   text.replace(text.find("position: [0, 0, 100]"), 21,
                "position: [0, 0, 100], velocity: [7, 0, 0], angular_velocity: [0, 3, 0]");
-  const Model m = read_model_text(text, "mast.yaml");
+  const Model m = io::read_model_text(text, "mast.yaml");
   for (std::size_t k = 1; k < 6; ++k) {
     const Vec3 arm = m.bodies[k].position - m.bodies[0].position;
     EXPECT_LT((m.bodies[k].angular_velocity - Vec3(0, 3, 0)).norm(), 1e-15);

@@ -9,27 +9,28 @@ namespace polhode::read_fields_tests {
 namespace {
 
 /// A value within the range that differs from all defaults.
-double number_for(const Field& field) {
+double number_for(const io::Field& field) {
   const double least = std::max(field.range.least, -4.0), most = std::min(field.range.most, 10.0);
-  return field.kind == FieldKind::kInteger ? std::ceil(least) + 3.0 : least + 0.3 * (most - least);
+  return field.kind == io::FieldKind::kInteger ? std::ceil(least) + 3.0
+                                               : least + 0.3 * (most - least);
 }
 
 /// Text of a value for a field of the model file; "" for kinds that are not bound to a member.
-std::string text_for(const Field& field) {
+std::string text_for(const io::Field& field) {
   switch (field.kind) {
-    case FieldKind::kNumber:
-    case FieldKind::kStep:
-    case FieldKind::kInteger:
-    case FieldKind::kTimeNumber:
+    case io::FieldKind::kNumber:
+    case io::FieldKind::kStep:
+    case io::FieldKind::kInteger:
+    case io::FieldKind::kTimeNumber:
       return format("{}", number_for(field));
-    case FieldKind::kText:
+    case io::FieldKind::kText:
       return "steel";
-    case FieldKind::kVector:
-    case FieldKind::kDirection:
+    case io::FieldKind::kVector:
+    case io::FieldKind::kDirection:
       return "[0, 0.6, 0.8]";
-    case FieldKind::kNumberList:
+    case io::FieldKind::kNumberList:
       return "[2.5, 1]";
-    case FieldKind::kNames:
+    case io::FieldKind::kNames:
       return "[red, blue]";
     default:
       return "";
@@ -37,23 +38,23 @@ std::string text_for(const Field& field) {
 }
 
 /// Texts of which at least one is not the default.
-std::vector<std::string> texts_for(const Field& field) {
-  if (field.kind == FieldKind::kBoolean) return {"false", "true"};
-  if (field.kind == FieldKind::kChoice) return field.choices;
+std::vector<std::string> texts_for(const io::Field& field) {
+  if (field.kind == io::FieldKind::kBoolean) return {"false", "true"};
+  if (field.kind == io::FieldKind::kChoice) return field.choices;
   return {text_for(field)};
 }
 
 /// Reads a section of one table into a spec. @returns the messages, one a line.
 template <class Spec>
-std::string read(const FieldTable& table, const std::string& text, Spec& spec) {
-  const SourceTree tree = SourceTree::parse(text, "test.yaml");
-  Diagnostics diagnostics(tree.source());
-  ReadContext context{.tree = tree, .diagnostics = diagnostics};
-  Section section(context, tree.root(), {}, "section", table);
+std::string read(const io::FieldTable& table, const std::string& text, Spec& spec) {
+  const io::SourceTree tree = io::SourceTree::parse(text, "test.yaml");
+  io::Diagnostics diagnostics(tree.source());
+  io::ReadContext context{.tree = tree, .diagnostics = diagnostics};
+  io::Section section(context, tree.root(), {}, "section", table);
   section.read_into(spec);
   try {
     diagnostics.throw_if_any();
-  } catch (const ModelErrors& e) {
+  } catch (const io::ModelErrors& e) {
     return e.what();
   }
   return "";
@@ -70,7 +71,7 @@ bool same(const T& a, const T& b) {
 
 /// Whether a member has equal values in two specs.
 template <class Spec>
-bool equal(const SpecMember& member, const Spec& one, const Spec& other) {
+bool equal(const io::SpecMember& member, const Spec& one, const Spec& other) {
   bool result = false;
   member.visit(one, [&](const auto& a) {
     member.visit(other, [&](const auto& b) {
@@ -81,14 +82,14 @@ bool equal(const SpecMember& member, const Spec& one, const Spec& other) {
 }
 
 /// The table of one field, which is not required.
-FieldTable table_of(Field field) {
+io::FieldTable table_of(io::Field field) {
   field.required = false;
   return {"table", "One field.", {std::move(field)}};
 }
 
 TEST(ReadInto, StoresEveryBoundField) {
-  for (const FieldTable* table : all_field_tables())
-    for (const Field& field : table->fields)
+  for (const io::FieldTable* table : io::all_field_tables())
+    for (const io::Field& field : table->fields)
       test::BoundSpecs().each([&]<class Spec>(Spec& standard) {
         if (!field.member.belongs_to<Spec>()) return;
         bool changes = false;
@@ -104,7 +105,7 @@ TEST(ReadInto, StoresEveryBoundField) {
 
 /// The value that a word gives to the field of an enumeration.
 template <class Spec, class Enum>
-Enum value_of(const FieldTable& table, const char* name, const char* word, Enum Spec::*member) {
+Enum value_of(const io::FieldTable& table, const char* name, const char* word, Enum Spec::*member) {
   Spec spec{};
   EXPECT_EQ(read(table_of(table.at(name)), std::string(name) + ": " + word + "\n", spec), "");
   return spec.*member;
@@ -118,7 +119,7 @@ TEST(ReadInto, MapsEachWordToItsEnumerator) {
       {"maximum", Combination::maximum},
       {"product", Combination::product},
   };
-  const FieldTable& combine = contact_combination_fields();
+  const io::FieldTable& combine = io::contact_combination_fields();
   for (const auto& [word, way] : ways) {
     EXPECT_EQ(value_of(combine, "friction", word, &ContactsSpec::friction), way);
     EXPECT_EQ(value_of(combine, "restitution", word, &ContactsSpec::restitution), way);
@@ -126,10 +127,10 @@ TEST(ReadInto, MapsEachWordToItsEnumerator) {
   using Law = JointEnforcement::Law;
   for (const auto& [word, law] :
        {std::pair("penalty", Law::penalty), {"augmented", Law::augmented}})
-    EXPECT_EQ(value_of(enforcement_fields(), "type", word, &JointEnforcement::law), law);
+    EXPECT_EQ(value_of(io::enforcement_fields(), "type", word, &JointEnforcement::law), law);
   for (const auto& [word, strain] :
        {std::pair("engineering", BarStrain::engineering), {"green", BarStrain::green}})
-    EXPECT_EQ(value_of(cable_fields(), "strain", word, &CableLineSpec::strain), strain);
+    EXPECT_EQ(value_of(io::cable_fields(), "strain", word, &CableLineSpec::strain), strain);
 }
 
 struct Trip {
@@ -138,15 +139,15 @@ struct Trip {
   int legs = 2;
 };
 
-const FieldTable& trip_fields() {
-  static const FieldTable table{
+const io::FieldTable& trip_fields() {
+  static const io::FieldTable table{
       "trip",
       "A table of this test.",
-      {{.name = "length", .meaning = "Length.", .range = kPositive, .member = &Trip::length},
+      {{.name = "length", .meaning = "Length.", .range = io::kPositive, .member = &Trip::length},
        {.name = "pace", .meaning = "Pace.", .member = &Trip::pace},
        {.name = "by_hand", .meaning = "A number without a member."},
        {.name = "legs",
-        .kind = FieldKind::kInteger,
+        .kind = io::FieldKind::kInteger,
         .meaning = "Number of legs.",
         .member = &Trip::legs}}};
   return table;
@@ -168,17 +169,17 @@ TEST(ReadInto, DoesNotChangeAbsentOrInvalidFields) {
 
 TEST(ReadInto, RefusesAnotherSpecAndAMemberThatCannotStoreTheKind) {
   Trip trip;
-  EXPECT_THROW(read(analysis_fields(), "duration: 2\n", trip), std::logic_error);
-  Field field = trip_fields().at("length");
-  field.kind = FieldKind::kText;
+  EXPECT_THROW(read(io::analysis_fields(), "duration: 2\n", trip), std::logic_error);
+  io::Field field = trip_fields().at("length");
+  field.kind = io::FieldKind::kText;
   EXPECT_THROW(read(table_of(field), "length: long\n", trip), std::logic_error);
 }
 
 TEST(ReadInto, LeavesOutKeysThatAreReadByHand) {
-  const SourceTree tree = SourceTree::parse("length: 3\nlegs: 7\n", "test.yaml");
-  Diagnostics diagnostics(tree.source());
-  ReadContext context{.tree = tree, .diagnostics = diagnostics};
-  Section section(context, tree.root(), {}, "section", trip_fields());
+  const io::SourceTree tree = io::SourceTree::parse("length: 3\nlegs: 7\n", "test.yaml");
+  io::Diagnostics diagnostics(tree.source());
+  io::ReadContext context{.tree = tree, .diagnostics = diagnostics};
+  io::Section section(context, tree.root(), {}, "section", trip_fields());
   Trip trip;
   section.read_into(trip, {"legs"});
   EXPECT_EQ(trip.length, 3.0);

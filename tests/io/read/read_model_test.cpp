@@ -15,14 +15,14 @@ constexpr double kPi = std::numbers::pi;
 /// Rounding of a few operations on numbers of size 1.
 constexpr double kRounding = 1e-14;
 
-Model read(const std::string& rest, const Overrides& overrides = {}) {
-  return read_model_text("format: 1\n" + rest, "m.yaml", overrides);
+Model read(const std::string& rest, const io::Overrides& overrides = {}) {
+  return io::read_model_text("format: 1\n" + rest, "m.yaml", overrides);
 }
 
-std::string first_fault(const std::string& rest, const Overrides& overrides = {}) {
+std::string first_fault(const std::string& rest, const io::Overrides& overrides = {}) {
   try {
     static_cast<void>(read(rest, overrides));
-  } catch (const ModelErrors& errors) {
+  } catch (const io::ModelErrors& errors) {
     return errors.diagnostics().front().path + ": " + errors.diagnostics().front().what;
   }
   return "";
@@ -200,7 +200,7 @@ TEST(ReadModel, LocatesAnInvalidOverride) {
   try {
     static_cast<void>(read(kTwo, {"bodies.a.mass=2 m"}));
     FAIL();
-  } catch (const ModelErrors& errors) {
+  } catch (const io::ModelErrors& errors) {
     EXPECT_EQ(errors.diagnostics().front().place.file, "--set bodies.a.mass=2 m");
     EXPECT_EQ(errors.diagnostics().front().place.line, 0);
   }
@@ -214,7 +214,8 @@ TEST(ReadModel, ReportsSettingsThatDoNotFitTogether) {
 }
 
 TEST(ReadModel, ReportsAFileThatCannotBeRead) {
-  EXPECT_THROW(static_cast<void>(read_model("no_such_folder/no_such_file.yaml")), FileError);
+  EXPECT_THROW(static_cast<void>(io::read_model("no_such_folder/no_such_file.yaml")),
+               io::FileError);
 }
 
 TEST(Model, FindsBodiesAndJointsByName) {

@@ -69,16 +69,16 @@ class ReadParts : public testing::Test {
 
   Model whole(const std::string& parts, const std::string& more = "") {
     write(folder_ / "m.yaml", "format: 1\nparts:\n" + parts + more + kAnalysis);
-    return read_model(folder_ / "m.yaml");
+    return io::read_model(folder_ / "m.yaml");
   }
   Model arm() {
     write(folder_ / "alone.yaml", kArm + kAnalysis);
-    return read_model(folder_ / "alone.yaml");
+    return io::read_model(folder_ / "alone.yaml");
   }
   std::string faults(const std::string& parts, const std::string& more = "") {
     try {
       static_cast<void>(whole(parts, more));
-    } catch (const ModelErrors& errors) {
+    } catch (const io::ModelErrors& errors) {
       std::string text = errors.text();
       const std::string path = folder_ / "";
       for (std::size_t k = 0; (k = text.find(path, k)) != std::string::npos;)

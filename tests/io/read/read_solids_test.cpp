@@ -14,8 +14,8 @@ namespace {
 constexpr double kRounding = 1e-14;
 
 const Model& everything() {
-  static const Model model = read_model(std::filesystem::path(test::source_dir()) / "tests" /
-                                        "corpus" / "good" / "solids.yaml");
+  static const Model model = io::read_model(std::filesystem::path(test::source_dir()) / "tests" /
+                                            "corpus" / "good" / "solids.yaml");
   return model;
 }
 
@@ -58,8 +58,8 @@ TEST(ReadSolids, KeepsBondsAndPrescribedNodesInTheOrderOfTheFile) {
   const SolidSpec& pad = model.solids[0];
   ASSERT_EQ(pad.bonded.size(), 2u);
   EXPECT_EQ(model.body_name(pad.bonded[0].body), "base");
-  EXPECT_EQ(pad.bonded[0].nodes[0].kind, Selection::Kind::kPlane);
-  EXPECT_EQ(pad.bonded[0].nodes[0].level, Selection::Level::kMin);
+  EXPECT_EQ(pad.bonded[0].nodes[0].kind, solids::Selection::Kind::kPlane);
+  EXPECT_EQ(pad.bonded[0].nodes[0].level, solids::Selection::Level::kMin);
   const SolidSpec& rod = model.solids[1];
   EXPECT_EQ(rod.bonded[0].body, kGround);
   EXPECT_EQ(rod.bonded[0].nodes[0].set, "start");

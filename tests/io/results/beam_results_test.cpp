@@ -90,8 +90,8 @@ std::vector<float> array(const std::string& file, const std::string& name) {
 }
 
 std::string run_into(const std::string& folder, const std::string& text) {
-  Simulation s(read_model_text(text, "mast.yaml"));
-  Recorder recorder(s, folder, {});
+  Simulation s(io::read_model_text(text, "mast.yaml"));
+  io::Recorder recorder(s, folder, {});
   recorder.step(s);
   const RunSummary r = s.run([&](Simulation& now) { recorder.frame(now); },
                              [&](Simulation& now) { recorder.step(now); });
@@ -105,9 +105,9 @@ std::string run_into(const std::string& folder, const std::string& text) {
 TEST(BeamResults, ContainNodesSectionForcesAndTensions) {
   const test::Scratch scratch;
   const std::string folder = scratch / "out";
-  const Model model = read_model_text(kModel, "mast.yaml");
+  const Model model = io::read_model_text(kModel, "mast.yaml");
   Simulation s(model);
-  Recorder recorder(s, folder, {});
+  io::Recorder recorder(s, folder, {});
   s.run([&](Simulation& now) { recorder.frame(now); });
   recorder.close();
   const hid_t file = H5Fopen((folder + "/results.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -164,7 +164,7 @@ TEST(BeamResults, RecordProbesOfElementsAndCablePieces) {
 TEST(BeamResults, WriteLinesWithTheirForcesForParaview) {
   const test::Scratch scratch;
   run_into(scratch / "out", kModel);
-  const std::string view = read_file(scratch / "out/paraview/lines/000004.vtp");
+  const std::string view = io::read_file(scratch / "out/paraview/lines/000004.vtp");
   EXPECT_THAT(view, HasSubstr(R"(NumberOfPoints="11" NumberOfLines="8")"));
   EXPECT_EQ(array(view, "points").size(), 33u);
   const std::vector<float> radius = array(view, "radius"), force = array(view, "force");
@@ -173,7 +173,7 @@ TEST(BeamResults, WriteLinesWithTheirForcesForParaview) {
   ASSERT_EQ(force.size(), 24u);
   EXPECT_GT(force[3 * 5], 0.0F);  // the rope is taut
   // results.pvd contains the bodies that the user named.
-  const std::string bodies = read_file(scratch / "out/paraview/results/000004.vtp");
+  const std::string bodies = io::read_file(scratch / "out/paraview/results/000004.vtp");
   EXPECT_THAT(bodies, HasSubstr(R"(NumberOfPolys="12")"));  // the cube of the stone
 }
 
@@ -182,13 +182,14 @@ TEST(BeamResults, ContinueInTheSameBitsAfterARestart) {
   std::string viscous = kModel;
   viscous.replace(viscous.find("density: 8000"), 13,
                   "density: 8000, viscosity: {relaxation_time: 1 ms}");
-  const Model model = read_model_text(viscous, "mast.yaml");
+  const Model model = io::read_model_text(viscous, "mast.yaml");
   Simulation straight(model);
   for (int k = 0; k < 4; ++k) {
-    if (k == 2) write_checkpoint(scratch / "half.pst", model, straight.system(), straight.state());
+    if (k == 2)
+      io::write_checkpoint(scratch / "half.pst", model, straight.system(), straight.state());
     ASSERT_TRUE(straight.step(1.0).accepted);
   }
-  Simulation continued(model, read_checkpoint(scratch / "half.pst", model, straight.system()));
+  Simulation continued(model, io::read_checkpoint(scratch / "half.pst", model, straight.system()));
   for (int k = 2; k < 4; ++k) ASSERT_TRUE(continued.step(1.0).accepted);
   EXPECT_EQ(continued.state_hash(), straight.state_hash());
 }
@@ -208,7 +209,7 @@ TEST(BeamResults, HaveSectionForcesThatBalanceTheWeight) {
                "density: 8000, viscosity: {relaxation_time: 10 ms}");
   text.replace(text.find("duration: 4 ms, step: 1 ms"), 26,
                "duration: 3, step: 10 ms, rho_inf: 0.5");
-  Simulation s(read_model_text(text, "mast.yaml"));
+  Simulation s(io::read_model_text(text, "mast.yaml"));
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   const BeamReport beam = s.beam(0);
@@ -220,11 +221,11 @@ TEST(BeamResults, HaveSectionForcesThatBalanceTheWeight) {
 }
 
 TEST(BeamResults, ReportInvalidProbes) {
-  Model model = read_model_text(kModel, "mast.yaml");
+  Model model = io::read_model_text(kModel, "mast.yaml");
   const test::Scratch scratch;
   model.output.probes[1].element = 4;
   const Simulation s(model);
-  EXPECT_THROW(Recorder(s, scratch / "out", {}), InputError);
+  EXPECT_THROW(io::Recorder(s, scratch / "out", {}), InputError);
 }
 
 }  // namespace polhode::beam_results_tests

@@ -85,12 +85,12 @@ struct Saved {
   State state = unlike_any_other(system);
   test::Scratch scratch;
   std::string path = scratch / "checkpoint.pst";
-  Saved() { write_checkpoint(path, model, system, state); }
+  Saved() { io::write_checkpoint(path, model, system, state); }
 };
 
 TEST(Checkpoint, RestoresEveryBit) {
   const Saved s;
-  const State back = read_checkpoint(s.path, s.model, s.system);
+  const State back = io::read_checkpoint(s.path, s.model, s.system);
   EXPECT_EQ(state_bytes(s.system, back), state_bytes(s.system, s.state));
   EXPECT_EQ(back.ledger.dissipated.rest, s.state.ledger.dissipated.rest);
   EXPECT_EQ(back.ledger.iterations, 1234567890123);
@@ -105,7 +105,7 @@ TEST(Checkpoint, AllowsALongerDurationAndOtherOutput) {
   longer.analysis.duration = 1e3;
   longer.output.every = 0.5;
   longer.title = "another";
-  EXPECT_NO_THROW((void)read_checkpoint(s.path, longer, s.system));
+  EXPECT_NO_THROW((void)io::read_checkpoint(s.path, longer, s.system));
 }
 
 TEST(Checkpoint, RefusesAnotherModel) {
@@ -113,7 +113,7 @@ TEST(Checkpoint, RefusesAnotherModel) {
   Model heavier = s.model;
   heavier.bodies[3].mass = 2.0;
   try {
-    (void)read_checkpoint(s.path, heavier, build_system(heavier));
+    (void)io::read_checkpoint(s.path, heavier, build_system(heavier));
     FAIL() << "read";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("was written by a run of another model"));
@@ -125,11 +125,11 @@ TEST(Checkpoint, RefusesAnotherModel) {
 // a message.
 TEST(Checkpoint, RefusesADamagedFile) {
   const Saved s;
-  const std::string good = read_file(s.path);
+  const std::string good = io::read_file(s.path);
   const auto message = [&](const std::string& bytes) -> std::string {
     std::ofstream(s.path, std::ios::binary | std::ios::trunc) << bytes;
     try {
-      (void)read_checkpoint(s.path, s.model, s.system);
+      (void)io::read_checkpoint(s.path, s.model, s.system);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -152,14 +152,14 @@ TEST(Checkpoint, RefusesADamagedFile) {
 
 TEST(Checkpoint, ReportsAMissingFile) {
   const Saved s;
-  EXPECT_THROW((void)read_checkpoint("no-such-file.pst", s.model, s.system), FileError);
+  EXPECT_THROW((void)io::read_checkpoint("no-such-file.pst", s.model, s.system), io::FileError);
 }
 
 TEST(Checkpoint, ReplacesAnOldOneAtomically) {
   const Saved s;
-  write_checkpoint(s.path, s.model, s.system, s.state);
+  io::write_checkpoint(s.path, s.model, s.system, s.state);
   EXPECT_FALSE(std::filesystem::exists(s.path + ".tmp"));
-  EXPECT_NO_THROW((void)read_checkpoint(s.path, s.model, s.system));
+  EXPECT_NO_THROW((void)io::read_checkpoint(s.path, s.model, s.system));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ output:
 
 TEST(ContactOutput, HasForcesImpulsesAndLossesByNewtonsLaws) {
   const test::Scratch scratch;
-  Simulation simulation(read_model_text(kModel, "m.yaml"));
+  Simulation simulation(io::read_model_text(kModel, "m.yaml"));
   const RunSummary summary = recorded_run(simulation, (scratch / "out"));
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   // Columns: t, gap, normal, f (3), ft (3), p (3), points, status, impulse, lost.
@@ -81,9 +81,9 @@ TEST(ContactOutput, HasForcesImpulsesAndLossesByNewtonsLaws) {
 
 TEST(ContactOutput, RecordsWhenASensorBeginsAndEnds) {
   const test::Scratch scratch;
-  Simulation simulation(read_model_text(kModel, "m.yaml"));
+  Simulation simulation(io::read_model_text(kModel, "m.yaml"));
   recorded_run(simulation, (scratch / "out"));
-  const std::string events = read_file((scratch / "out/events.csv"));
+  const std::string events = io::read_file((scratch / "out/events.csv"));
   EXPECT_THAT(events, HasSubstr("passing,began"));
   EXPECT_THAT(events, HasSubstr("passing,ended"));
   ASSERT_EQ(simulation.sensor_events().size(), 2U);
@@ -94,32 +94,32 @@ TEST(ContactOutput, RecordsWhenASensorBeginsAndEnds) {
 
 TEST(ContactOutput, ContinuesFromACheckpointBitForBit) {
   const test::Scratch scratch;
-  Model model = read_model_text(kModel, "m.yaml");
+  Model model = io::read_model_text(kModel, "m.yaml");
   Simulation straight(model);
   const RunSummary whole = recorded_run(straight, (scratch / "straight"));
   // Stop where the block slides and the ball is on its way up again.
   model.analysis.duration = 0.35;
   Simulation first(model);
   recorded_run(first, (scratch / "parts"));
-  write_checkpoint((scratch / "c.pst"), first.model(), first.system(), first.state());
+  io::write_checkpoint((scratch / "c.pst"), first.model(), first.system(), first.state());
   model.analysis.duration = 1.5;
   const Simulation plan(model);
-  Simulation second(model, read_checkpoint((scratch / "c.pst"), model, plan.system()));
+  Simulation second(model, io::read_checkpoint((scratch / "c.pst"), model, plan.system()));
   const RunSummary rest = recorded_run(second, (scratch / "parts"), true);
   EXPECT_EQ(rest.result_hash, whole.result_hash);
   EXPECT_EQ(rest.contacts->lost_by_friction, whole.contacts->lost_by_friction);
   EXPECT_EQ(rest.contacts->lost_in_impacts, whole.contacts->lost_in_impacts);
-  EXPECT_EQ(read_file((scratch / "parts/probes/feet.csv")),
-            read_file((scratch / "straight/probes/feet.csv")));
-  EXPECT_EQ(read_file((scratch / "parts/events.csv")),
-            read_file((scratch / "straight/events.csv")));
+  EXPECT_EQ(io::read_file((scratch / "parts/probes/feet.csv")),
+            io::read_file((scratch / "straight/probes/feet.csv")));
+  EXPECT_EQ(io::read_file((scratch / "parts/events.csv")),
+            io::read_file((scratch / "straight/events.csv")));
 }
 
 TEST(ContactOutput, IncludesContactForcesInReactionsAndAccelerations) {
   // Creep of the block by its bristles, half a second after it stopped; it decreases with the step.
   for (const auto& [step, bound] : {std::pair{"5 ms", 1e-5}, {"0.5 ms", 1e-9}}) {
     Simulation simulation(
-        read_model_text(kModel, "m.yaml", {std::string("analysis.step=") + step}));
+        io::read_model_text(kModel, "m.yaml", {std::string("analysis.step=") + step}));
     simulation.run();
     const int block = simulation.model().body_index("block");
     EXPECT_LT(simulation.point(block, Vec3::Zero()).acceleration.norm(), bound) << step;
@@ -127,7 +127,7 @@ TEST(ContactOutput, IncludesContactForcesInReactionsAndAccelerations) {
 }
 
 TEST(ContactOutput, NumericalDampingIsAcceptedWithAWarning) {
-  const Simulation simulation(read_model_text(kModel, "m.yaml", {"analysis.rho_inf=0.9"}));
+  const Simulation simulation(io::read_model_text(kModel, "m.yaml", {"analysis.rho_inf=0.9"}));
   EXPECT_THAT(simulation.summary().narration, HasSubstr("rho_inf is 0.9"));
 }
 

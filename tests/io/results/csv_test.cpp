@@ -18,11 +18,11 @@ TEST(CsvTable, WritesNumbersThatReadBackAsTheSame) {
   const test::Scratch scratch;
   const double x = 1.0 / 3.0, tiny = 4.9406564584124654e-324;
   {
-    CsvTable table(scratch / "p.csv", kHeader);
+    io::CsvTable table(scratch / "p.csv", kHeader);
     table.append({0.1, x});
     table.append({0.2, tiny});
   }
-  const std::string text = read_file(scratch / "p.csv");
+  const std::string text = io::read_file(scratch / "p.csv");
   EXPECT_EQ(text, "t [s],x [m]\n0.1,0.3333333333333333\n0.2,5e-324\n");
   EXPECT_EQ(std::stod("0.3333333333333333"), x);
 }
@@ -30,29 +30,29 @@ TEST(CsvTable, WritesNumbersThatReadBackAsTheSame) {
 TEST(CsvTable, KeepsRowsUpToTheTimeItContinuesAt) {
   const test::Scratch scratch;
   {
-    CsvTable table(scratch / "p.csv", kHeader);
+    io::CsvTable table(scratch / "p.csv", kHeader);
     for (double t : {0.0, 1.0, 2.0, 3.0}) table.append({t, t});
   }
   // A killed writer may leave part of a line.
   std::ofstream(scratch / "p.csv", std::ios::app) << "4,";
-  CsvTable table(scratch / "p.csv", kHeader, 1.5);
+  io::CsvTable table(scratch / "p.csv", kHeader, 1.5);
   EXPECT_EQ(table.last_time(), 1.0);
   table.append({1.5, 9.0});
   table.flush();
-  EXPECT_EQ(read_file(scratch / "p.csv"), "t [s],x [m]\n0,0\n1,1\n1.5,9\n");
+  EXPECT_EQ(io::read_file(scratch / "p.csv"), "t [s],x [m]\n0,0\n1,1\n1.5,9\n");
 }
 
 TEST(CsvTable, RefusesToContinueAnotherTable) {
   const test::Scratch scratch;
-  { CsvTable table(scratch / "p.csv", {"t [s]", "y [m]"}); }
-  EXPECT_THROW(CsvTable(scratch / "p.csv", kHeader, 1.0), InputError);
+  { io::CsvTable table(scratch / "p.csv", {"t [s]", "y [m]"}); }
+  EXPECT_THROW(io::CsvTable(scratch / "p.csv", kHeader, 1.0), InputError);
 }
 
 TEST(CsvTable, NamesTheFileItCannotWrite) {
   try {
-    CsvTable table("/no/such/folder/p.csv", kHeader);
+    io::CsvTable table("/no/such/folder/p.csv", kHeader);
     FAIL() << "written";
-  } catch (const FileError& error) {
+  } catch (const io::FileError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("/no/such/folder/p.csv"));
     EXPECT_THAT(error.what(), testing::HasSubstr("No such file or directory"));
   }

@@ -55,8 +55,8 @@ Model model_of_all() {
 }
 
 TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
-  const std::string fingerprint = model_fingerprint(model_of_all());
-  EXPECT_EQ(model_fingerprint(model_of_all()), fingerprint);
+  const std::string fingerprint = io::model_fingerprint(model_of_all());
+  EXPECT_EQ(io::model_fingerprint(model_of_all()), fingerprint);
   const std::pair<const char*, std::function<void(Model&)>> changes[] = {
       {"gravity", [](Model& m) { m.gravity[2] = -9.8; }},
       {"inertia", [](Model& m) { m.bodies[1].inertia(0, 1) = 1e-9; }},
@@ -106,12 +106,12 @@ TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
   for (const auto& [what, change] : changes) {
     Model other = model_of_all();
     change(other);
-    EXPECT_NE(model_fingerprint(other), fingerprint) << what;
+    EXPECT_NE(io::model_fingerprint(other), fingerprint) << what;
   }
 }
 
 TEST(ModelFingerprint, LeavesOutWhatMayChangeWhenARunIsContinued) {
-  const std::string fingerprint = model_fingerprint(model_of_all());
+  const std::string fingerprint = io::model_fingerprint(model_of_all());
   const std::function<void(Model&)> changes[] = {
       [](Model& m) { m.title = "again"; },      [](Model& m) { m.analysis.duration = 7.0; },
       [](Model& m) { m.analysis.step = 1e-3; }, [](Model& m) { m.analysis.solver = "klu"; },
@@ -120,14 +120,14 @@ TEST(ModelFingerprint, LeavesOutWhatMayChangeWhenARunIsContinued) {
   for (const auto& change : changes) {
     Model other = model_of_all();
     change(other);
-    EXPECT_EQ(model_fingerprint(other), fingerprint);
+    EXPECT_EQ(io::model_fingerprint(other), fingerprint);
   }
   // Without contact, shapes are used in pictures only.
   Model drawn = model_of_all();
   drawn.contacts.present = false;
-  const std::string without = model_fingerprint(drawn);
+  const std::string without = io::model_fingerprint(drawn);
   drawn.bodies[1].shapes[0].sizes[0] = 0.2;
-  EXPECT_EQ(model_fingerprint(drawn), without);
+  EXPECT_EQ(io::model_fingerprint(drawn), without);
 }
 
 /// Another value of the same type.
@@ -138,7 +138,7 @@ struct Change {
   void operator()(std::string* value) const { *value += "x"; }
   void operator()(Vec3* value) const { value->y() += 0.5; }
   void operator()(TimeFunctionPtr* value) const { *value = std::make_shared<Wave>(3.0); }
-  void operator()(const EnumReference& value) const { value.set(value.get() + 1); }
+  void operator()(const io::EnumReference& value) const { value.set(value.get() + 1); }
   template <class T>
   void operator()(std::vector<T>* value) const {
     value->emplace_back();
@@ -151,9 +151,9 @@ struct Change {
 
 /// Fields of every table, so that a new one is covered.
 TEST(ModelFingerprint, ChangesWithEveryBoundFieldThatMayNotChange) {
-  const std::string fingerprint = model_fingerprint(test::BoundSpecs().model());
-  for (const FieldTable* table : all_field_tables())
-    for (const Field& field : table->fields) {
+  const std::string fingerprint = io::model_fingerprint(test::BoundSpecs().model());
+  for (const io::FieldTable* table : io::all_field_tables())
+    for (const io::Field& field : table->fields) {
       test::BoundSpecs specs;
       bool bound = false;
       specs.each([&]<class Spec>(Spec& spec) {
@@ -162,7 +162,7 @@ TEST(ModelFingerprint, ChangesWithEveryBoundFieldThatMayNotChange) {
         bound = true;
       });
       if (!bound) continue;
-      EXPECT_EQ(model_fingerprint(specs.model()) == fingerprint, field.may_change)
+      EXPECT_EQ(io::model_fingerprint(specs.model()) == fingerprint, field.may_change)
           << table->title << ' ' << field.name;
     }
 }
@@ -174,7 +174,7 @@ TEST(ModelFingerprint, ReadsMeshFiles) {
     Model m = model_of_all();
     m.solids[0].mesh.file = scratch / name;
     std::ofstream(m.solids[0].mesh.file) << text;
-    return model_fingerprint(m);
+    return io::model_fingerprint(m);
   };
   const std::string one = with_mesh("one.msh", "nodes");
   EXPECT_EQ(with_mesh("two.msh", "nodes"), one);

@@ -33,7 +33,7 @@ std::vector<T> array(const std::string& file, const std::string& tag, const std:
 }
 
 /// A report whose numbers are functions of the node or element.
-SolidReport report_of(const Mesh& mesh) {
+SolidReport report_of(const solids::Mesh& mesh) {
   SolidReport report;
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const Vec3 u(0.25, 0.0, static_cast<double>(i));
@@ -49,20 +49,22 @@ SolidReport report_of(const Mesh& mesh) {
     sample.volume = 1.0;
     report.elements.push_back(sample);
   }
-  report.nodal = NodalRecovery(mesh, {1.0, 1.0}).fields(report.elements);
+  report.nodal = solids::NodalRecovery(mesh, {1.0, 1.0}).fields(report.elements);
   return report;
 }
 
 TEST(SolidsWriter, WritesEverySolidAtItsPosition) {
   const test::Scratch scratch;
-  const Mesh hex = make_mesh("hex", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 2}}}, "hex8");
-  const Mesh wedge = make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
-  SolidsWriter writer(scratch / "view", "solids", {"a", "b"}, {&hex, &wedge});
+  const solids::Mesh hex =
+      solids::make_mesh("hex", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 2}}}, "hex8");
+  const solids::Mesh wedge =
+      solids::make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
+  io::SolidsWriter writer(scratch / "view", "solids", {"a", "b"}, {&hex, &wedge});
   writer.append(0.5, {report_of(hex), report_of(wedge)});
   writer.close();
-  EXPECT_THAT(read_file(scratch / "view/solids.pvd"),
+  EXPECT_THAT(io::read_file(scratch / "view/solids.pvd"),
               HasSubstr("timestep=\"0.5\" part=\"0\" file=\"solids/000000.vtu\""));
-  const std::string vtu = read_file(scratch / "view/solids/000000.vtu");
+  const std::string vtu = io::read_file(scratch / "view/solids/000000.vtu");
   EXPECT_THAT(vtu, HasSubstr("NumberOfPoints=\"20\" NumberOfCells=\"4\""));
   EXPECT_THAT(vtu,
               HasSubstr("Name=\"solid b\" NumberOfTuples=\"1\" format=\"ascii\">1</DataArray>"));
@@ -89,13 +91,14 @@ TEST(SolidsWriter, WritesEverySolidAtItsPosition) {
 /// outwards.
 TEST(SolidsWriter, OrdersNodesOfWedgesAsVtkDoes) {
   const test::Scratch scratch;
-  const Mesh wedge = make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
+  const solids::Mesh wedge =
+      solids::make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
   SolidReport report = report_of(wedge);
   report.position = wedge.nodes;
-  SolidsWriter writer(scratch / "view", "solids", {"w"}, {&wedge});
+  io::SolidsWriter writer(scratch / "view", "solids", {"w"}, {&wedge});
   writer.append(0.0, {report});
   writer.close();
-  const std::string vtu = read_file(scratch / "view/solids/000000.vtu");
+  const std::string vtu = io::read_file(scratch / "view/solids/000000.vtu");
   const auto cells = array<std::int64_t>(vtu, "<Cells>", "connectivity");
   ASSERT_EQ(cells.size(), 12u);
   for (std::size_t at = 0; at < 12; at += 6) {

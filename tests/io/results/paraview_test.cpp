@@ -72,7 +72,7 @@ TEST(Paraview, DrawsAPlaneAsASquareLargerThanAllBodies) {
   plane.sizes = {0.0, 1.0, 1.0};
   floor.shapes.push_back(plane);
   model.bodies.push_back(floor);
-  const TriangleSurface square = body_pictures(model, 0.5)[2].surface;
+  const geometry::TriangleSurface square = io::body_pictures(model, 0.5)[2].surface;
   ASSERT_EQ(square.points.size(), 4u);
   ASSERT_EQ(square.triangles.size(), 2u);
   const double far = (Vec3(3, 4, 0) - floor.position).norm();
@@ -87,10 +87,10 @@ TEST(Paraview, DrawsAPlaneAsASquareLargerThanAllBodies) {
 
 TEST(ParaviewWriter, PutsShapesWhereTheBodiesAre) {
   const test::Scratch scratch;
-  ParaviewWriter writer(scratch / "view", "results", body_pictures(two_bodies(), 1.0));
+  io::ParaviewWriter writer(scratch / "view", "results", io::body_pictures(two_bodies(), 1.0));
   writer.append(0.25, {BodyMotion{}, quarter_turned()});
   writer.close();
-  const std::string vtp = read_file(scratch / "view/results/000000.vtp");
+  const std::string vtp = io::read_file(scratch / "view/results/000000.vtp");
   const auto points = array<float>(vtp, "points");
   const auto velocity = array<float>(vtp, "velocity");
   const auto owner = array<std::int32_t>(vtp, "body");
@@ -120,28 +120,29 @@ TEST(ParaviewWriter, PutsShapesWhereTheBodiesAre) {
 
 TEST(ParaviewWriter, ListsOnlyFilesThatExist) {
   const test::Scratch scratch;
-  ParaviewWriter writer(scratch / "view", "results", body_pictures(two_bodies(), 1.0));
+  io::ParaviewWriter writer(scratch / "view", "results", io::body_pictures(two_bodies(), 1.0));
   for (int k = 0; k < 3; ++k) {
     writer.append(0.5 * k, {BodyMotion{}, BodyMotion{}});
-    const std::string pvd = read_file(scratch / "view/results.pvd");  // As after a kill.
+    const std::string pvd = io::read_file(scratch / "view/results.pvd");  // As after a kill.
     const std::regex entry("file=\"([^\"]*)\"");
     for (std::sregex_iterator it(pvd.begin(), pvd.end(), entry), end; it != end; ++it)
-      EXPECT_THAT(read_file(scratch / ("view/" + (*it)[1].str())), HasSubstr("</VTKFile>"));
+      EXPECT_THAT(io::read_file(scratch / ("view/" + (*it)[1].str())), HasSubstr("</VTKFile>"));
     EXPECT_THAT(pvd, HasSubstr("</VTKFile>"));
   }
   writer.close();
-  const std::string pvd = read_file(scratch / "view/results.pvd");
+  const std::string pvd = io::read_file(scratch / "view/results.pvd");
   EXPECT_THAT(pvd, HasSubstr("timestep=\"1\" part=\"0\" file=\"results/000002.vtp\""));
 }
 
 TEST(ParaviewWriter, ContinuesAtATime) {
   const test::Scratch scratch;
   {
-    ParaviewWriter writer(scratch / "view", "results", body_pictures(two_bodies(), 1.0));
+    io::ParaviewWriter writer(scratch / "view", "results", io::body_pictures(two_bodies(), 1.0));
     for (int k = 0; k < 4; ++k) writer.append(k, {BodyMotion{}, BodyMotion{}});
     writer.close();
   }
-  const ParaviewWriter writer(scratch / "view", "results", body_pictures(two_bodies(), 1.0), 2.0);
+  const io::ParaviewWriter writer(scratch / "view", "results", io::body_pictures(two_bodies(), 1.0),
+                                  2.0);
   EXPECT_EQ(writer.frames(), 3u);
 }
 
@@ -156,7 +157,7 @@ TEST(BodyPictures, DrawABodyWithoutShapesAsTheBoxOfItsInertia) {
                       half[0] * half[0] + half[1] * half[1])
                      .asDiagonal();  // m/12·(2·half)² = half², as m = 3
   model.bodies.push_back(body);
-  const auto pictures = body_pictures(model, 1.0);
+  const auto pictures = io::body_pictures(model, 1.0);
   Vec3 most = Vec3::Zero();
   for (const Vec3& p : pictures[0].surface.points) most = most.cwiseMax(p.cwiseAbs());
   EXPECT_TRUE(most.isApprox(half, 1e-12)) << most.transpose();

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 constexpr int kBodies = 40;
 
 /// Frame k, whose numbers are functions of k and their place.
-ResultsFrame frame(int k) {
-  ResultsFrame f;
+io::ResultsFrame frame(int k) {
+  io::ResultsFrame f;
   f.t = 0.5 * k;
   for (int i = 0; i < kBodies; ++i) {
     f.position.emplace_back(k, i, 0.25);
@@ -33,19 +33,19 @@ ResultsFrame frame(int k) {
 }
 
 void write(const std::string& path, int frames) {
-  ResultsLayout layout;
+  io::ResultsLayout layout;
   layout.title = "Test";
   for (int i = 0; i < kBodies; ++i) layout.bodies.push_back("b" + std::to_string(i));
-  ResultsFile file(path, layout,
-                   {.version = "1.2.3", .model_text = "format: 1\n", .overrides = {"L=2"}});
+  io::ResultsFile file(path, layout,
+                       {.version = "1.2.3", .model_text = "format: 1\n", .overrides = {"L=2"}});
   for (int k = 0; k < frames; ++k) file.append(frame(k));
   file.close();
 }
 
 std::string message_of(const std::string& path) {
   try {
-    const ResultsReader reader(path);
-  } catch (const FileError& error) {
+    const io::ResultsReader reader(path);
+  } catch (const io::FileError& error) {
     return error.what();
   }
   return "no error";
@@ -54,7 +54,7 @@ std::string message_of(const std::string& path) {
 TEST(ResultsReader, ReadsWhatWasWritten) {
   const test::Scratch scratch;
   write(scratch / "results.h5", 7);
-  const ResultsReader reader(scratch / "results.h5");
+  const io::ResultsReader reader(scratch / "results.h5");
   EXPECT_EQ(reader.frames(), 7U);
   EXPECT_FALSE(reader.cut_short());
   EXPECT_THAT(reader.read("/time"), ElementsAre(0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0));
@@ -81,7 +81,7 @@ TEST(ResultsReader, ReadsAFileCutShortUpToItsLastWholeFrame) {
                                std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(scratch / "cut.h5",
                                  static_cast<std::uintmax_t>(part * static_cast<double>(whole)));
-    const ResultsReader reader(scratch / "cut.h5");
+    const io::ResultsReader reader(scratch / "cut.h5");
     EXPECT_TRUE(reader.cut_short());
     EXPECT_LE(reader.frames(), before);
     before = reader.frames();

@@ -21,8 +21,8 @@ namespace {
 
 using testing::HasSubstr;
 
-ResultsLayout layout(int bodies) {
-  ResultsLayout l;
+io::ResultsLayout layout(int bodies) {
+  io::ResultsLayout l;
   l.title = "Test";
   for (int i = 0; i < bodies; ++i) l.bodies.push_back("b" + std::to_string(i));
   l.joints = {{"hinge", "revolute", 1}, {"ball", "spherical", 3}, {"weld", "fixed", 0}};
@@ -31,8 +31,8 @@ ResultsLayout layout(int bodies) {
 }
 
 /// A frame whose numbers are functions of the frame's number k and their place.
-ResultsFrame frame(const ResultsLayout& l, int k) {
-  ResultsFrame f;
+io::ResultsFrame frame(const io::ResultsLayout& l, int k) {
+  io::ResultsFrame f;
   f.t = 0.5 * k;
   for (std::size_t i = 0; i < l.bodies.size(); ++i) {
     f.position.emplace_back(k, static_cast<double>(i), 0.25);
@@ -71,8 +71,9 @@ std::string python(const std::string& code) {
 
 TEST(ResultsFile, IsReadWithThreeLinesOfPython) {
   const test::Scratch scratch;
-  const ResultsLayout l = layout(3);
-  ResultsFile file(scratch / "results.h5", l, {.version = "1.2.3", .model_text = "format: 1\n"});
+  const io::ResultsLayout l = layout(3);
+  io::ResultsFile file(scratch / "results.h5", l,
+                       {.version = "1.2.3", .model_text = "format: 1\n"});
   for (int k = 0; k < 5; ++k) file.append(frame(l, k));
   file.close();
   const std::string output = python(R"(
@@ -102,14 +103,14 @@ print(results["provenance"].attrs["version"], results["provenance/model"].asstr(
 /// Data sets of joints with friction or limits; other joints have none.
 TEST(ResultsFile, ContainsFrictionAndStopsOfJoints) {
   const test::Scratch scratch;
-  ResultsLayout l = layout(1);
+  io::ResultsLayout l = layout(1);
   l.joints = {{"free", "revolute", 1, 0, 0},
               {"bush", "cylindrical", 2, 2, 1},
               {"pin", "revolute", 1, 1, 0},
               {"gate", "prismatic", 1, 0, 1}};
-  ResultsFile file(scratch / "results.h5", l, {});
+  io::ResultsFile file(scratch / "results.h5", l, {});
   for (int k = 0; k < 3; ++k) {
-    ResultsFrame f = frame(l, k);
+    io::ResultsFrame f = frame(l, k);
     f.friction = {1.0 + k, 2.0 + k, 3.0 + k};
     f.slips = {0.0, static_cast<double>(k % 2)};
     f.stops = {-1.0 - k, 5.0 + k};
@@ -135,14 +136,14 @@ print([name for name in joints["free"]], "stops" in joints["pin"], "friction" in
 /// Data sets of solids: nodes and elements of all solids in sequence, interfaces by name.
 TEST(ResultsFile, ContainsDeformableSolids) {
   const test::Scratch scratch;
-  Mesh mesh;
+  solids::Mesh mesh;
   mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.blocks = {{"tet4", {0, 1, 2, 3, 0, 2, 1, 4}}};
-  ResultsLayout l = layout(1);
+  io::ResultsLayout l = layout(1);
   l.solids = {{"pad", &mesh, mesh.nodes, {"b0", "lid"}}};
-  ResultsFile file(scratch / "results.h5", l, {});
+  io::ResultsFile file(scratch / "results.h5", l, {});
   for (int k = 0; k < 3; ++k) {
-    ResultsFrame f = frame(l, k);
+    io::ResultsFrame f = frame(l, k);
     SolidReport report;
     for (int i = 0; i < 5; ++i) {
       report.displacement.emplace_back(k, i, 0.5);
@@ -188,24 +189,24 @@ print(pad["interfaces/b0/force"][1], pad["interfaces/lid/moment"][2], pad["nodes
 
 TEST(ResultsFile, ContinuesAtATimeAndDropsLaterFrames) {
   const test::Scratch scratch;
-  const ResultsLayout l = layout(2);
+  const io::ResultsLayout l = layout(2);
   {
-    ResultsFile file(scratch / "results.h5", l, {});
+    io::ResultsFile file(scratch / "results.h5", l, {});
     for (int k = 0; k < 8; ++k) file.append(frame(l, k));
   }
-  ResultsFile file = ResultsFile::append_to(scratch / "results.h5", l, 1.5);
+  io::ResultsFile file = io::ResultsFile::append_to(scratch / "results.h5", l, 1.5);
   EXPECT_EQ(file.frames(), 4u);  // Times 0, 0.5, 1 and 1.5.
   file.append(frame(l, 100));
   file.close();
-  ResultsFile again = ResultsFile::append_to(scratch / "results.h5", l, 1e9);
+  io::ResultsFile again = io::ResultsFile::append_to(scratch / "results.h5", l, 1e9);
   EXPECT_EQ(again.frames(), 5u);
 }
 
 TEST(ResultsFile, RefusesToContinueTheResultsOfAnotherModel) {
   const test::Scratch scratch;
-  { ResultsFile file(scratch / "results.h5", layout(2), {}); }
+  { io::ResultsFile file(scratch / "results.h5", layout(2), {}); }
   try {
-    (void)ResultsFile::append_to(scratch / "results.h5", layout(3), 0.0);
+    (void)io::ResultsFile::append_to(scratch / "results.h5", layout(3), 0.0);
     FAIL() << "continued";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("belongs to another model"));
@@ -215,19 +216,19 @@ TEST(ResultsFile, RefusesToContinueTheResultsOfAnotherModel) {
 
 TEST(ResultsFile, NamesTheFileItCannotWrite) {
   try {
-    ResultsFile file("/no/such/folder/results.h5", layout(1), {});
+    io::ResultsFile file("/no/such/folder/results.h5", layout(1), {});
     FAIL() << "written";
-  } catch (const FileError& error) {
+  } catch (const io::FileError& error) {
     EXPECT_THAT(error.what(), HasSubstr("/no/such/folder/results.h5: cannot be written"));
   }
 }
 
 TEST(ResultsFile, ContainsAModelWithoutJointsAndLoads) {
   const test::Scratch scratch;
-  ResultsLayout l = layout(1);
+  io::ResultsLayout l = layout(1);
   l.joints.clear();
   l.loads.clear();
-  ResultsFile file(scratch / "results.h5", l, {});
+  io::ResultsFile file(scratch / "results.h5", l, {});
   file.append(frame(l, 0));
   EXPECT_NO_THROW(file.close());
 }
@@ -236,7 +237,7 @@ TEST(ResultsFile, ContainsAModelWithoutJointsAndLoads) {
 // leaves at least the frames older than its buffering time.
 TEST(ResultsFile, IsWholeAfterItsWriterWasKilled) {
   const test::Scratch scratch;
-  const ResultsLayout l = layout(20);
+  const io::ResultsLayout l = layout(20);
   for (const int milliseconds : {60, 137, 211, 305}) {
     const std::string path = scratch / "killed.h5";
     int first_frame[2];  // The writer signals that the first frame is written.
@@ -244,7 +245,7 @@ TEST(ResultsFile, IsWholeAfterItsWriterWasKilled) {
     const pid_t writer = fork();
     if (writer == 0) {
       alarm(10);  // The process ends even if the test is killed.
-      ResultsFile file(path, l, {});
+      io::ResultsFile file(path, l, {});
       for (int k = 0;; ++k) {
         file.append(frame(l, k));
         if (k == 0 && ::write(first_frame[1], "1", 1) != 1) _exit(1);

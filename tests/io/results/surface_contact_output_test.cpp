@@ -46,7 +46,7 @@ output:
 
 TEST(SurfaceContactOutput, HasForcesImpulsesAndLossesByNewtonsLaws) {
   const test::Scratch scratch;
-  Simulation simulation(read_model_text(kModel, "m.yaml"));
+  Simulation simulation(io::read_model_text(kModel, "m.yaml"));
   const RunSummary summary = recorded_run(simulation, scratch / "out");
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   const auto foot = csv_rows(scratch / "out/probes/foot.csv"),
@@ -90,21 +90,21 @@ TEST(SurfaceContactOutput, HasForcesImpulsesAndLossesByNewtonsLaws) {
 
 TEST(SurfaceContactOutput, ContinuesFromACheckpointBitForBit) {
   const test::Scratch scratch;
-  const Model model = read_model_text(kModel, "m.yaml");
+  const Model model = io::read_model_text(kModel, "m.yaml");
   Simulation straight(model);
   const RunSummary whole = recorded_run(straight, scratch / "straight");
   Model half = model;
   half.analysis.duration = 0.1;  // the block is deformed and slides
   Simulation first(half);
   ASSERT_EQ(recorded_run(first, scratch / "cut").end, RunEnd::finished);
-  write_checkpoint(scratch / "c.pst", first.model(), first.system(), first.state());
+  io::write_checkpoint(scratch / "c.pst", first.model(), first.system(), first.state());
   const Simulation plan(model);
-  Simulation second(model, read_checkpoint(scratch / "c.pst", model, plan.system()));
+  Simulation second(model, io::read_checkpoint(scratch / "c.pst", model, plan.system()));
   const RunSummary rest = recorded_run(second, scratch / "cut", true);
   EXPECT_EQ(rest.result_hash, whole.result_hash);
   for (const char* file : {"foot", "head"})
-    EXPECT_EQ(read_file(scratch / ("cut/probes/" + std::string(file) + ".csv")),
-              read_file(scratch / ("straight/probes/" + std::string(file) + ".csv")));
+    EXPECT_EQ(io::read_file(scratch / ("cut/probes/" + std::string(file) + ".csv")),
+              io::read_file(scratch / ("straight/probes/" + std::string(file) + ".csv")));
   EXPECT_EQ(rest.contacts->lost_by_friction, whole.contacts->lost_by_friction);
 }
 

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 const fs::path kRoot = test::source_dir();
 
 TEST(Schema, NamesEveryFieldWithItsMeaning) {
-  const std::string schema = json_schema();
-  for (const FieldTable* table : all_field_tables()) {
-    for (const Field& field : table->fields) {
+  const std::string schema = io::json_schema();
+  for (const io::FieldTable* table : io::all_field_tables()) {
+    for (const io::Field& field : table->fields) {
       EXPECT_NE(schema.find("\"" + field.name + "\""), std::string::npos) << table->title;
       EXPECT_FALSE(field.meaning.empty()) << table->title << " " << field.name;
     }
@@ -28,7 +28,7 @@ TEST(Schema, NamesEveryFieldWithItsMeaning) {
 }
 
 TEST(Schema, DefinesAllItsReferences) {
-  const std::string schema = json_schema();
+  const std::string schema = io::json_schema();
   const std::string mark = "\"#/$defs/";
   for (std::size_t k = schema.find(mark); k != std::string::npos; k = schema.find(mark, k + 1)) {
     const std::size_t start = k + mark.size();
@@ -40,7 +40,7 @@ TEST(Schema, DefinesAllItsReferences) {
 /// The published schema accepts the good models and refuses those with wrong keys or kinds.
 TEST(Schema, AgreesWithTheReader) {
   const fs::path file = fs::temp_directory_path() / "polhode_schema_test.json";
-  std::ofstream(file) << json_schema();
+  std::ofstream(file) << io::json_schema();
   const std::string command = "python3 \"" +
                               (kRoot / "tests/io/schema/validate_schema.py").string() + "\" \"" +
                               file.string() + "\" \"" + (kRoot / "tests/corpus").string() + "\"";
@@ -58,12 +58,12 @@ TEST(Schema, ReferencePageIsUpToDate) {
   const fs::path page = kRoot / "docs/reference/model_file.md";
   if (std::getenv("POLHODE_WRITE_REFERENCE")) {
     fs::create_directories(page.parent_path());
-    std::ofstream(page) << reference_markdown();
+    std::ofstream(page) << io::reference_markdown();
   }
   std::ifstream stream(page);
   std::ostringstream text;
   text << stream.rdbuf();
-  EXPECT_TRUE(text.str() == reference_markdown())
+  EXPECT_TRUE(text.str() == io::reference_markdown())
       << "Run this test with POLHODE_WRITE_REFERENCE=1 to write " << page;
 }
 

@@ -14,9 +14,9 @@ namespace {
 using testing::HasSubstr;
 
 Model model_of(const std::string& name, const std::map<std::string, std::string>& values) {
-  for (const ModelGenerator& generator : model_generators())
+  for (const io::ModelGenerator& generator : io::model_generators())
     if (generator.name == name)
-      return read_model_text(generate_model(generator, values), name + ".yaml");
+      return io::read_model_text(io::generate_model(generator, values), name + ".yaml");
   throw std::logic_error("no generator " + name);
 }
 
@@ -29,7 +29,7 @@ Vec3 place(const Model& model, const JointSpec& joint, int body, const Vec3& Z) 
 }
 
 TEST(ModelGenerators, GiveModelsThatAreAssembled) {
-  for (const ModelGenerator& generator : model_generators()) {
+  for (const io::ModelGenerator& generator : io::model_generators()) {
     const Model model = model_of(generator.name, {{"N", "7"}});
     for (const JointSpec& joint : model.joints) {
       const Vec3 gap =
@@ -73,10 +73,10 @@ TEST(ModelGenerators, BranchTheTreeInTwo) {
 }
 
 TEST(ModelGenerators, RefuseUnknownParametersAndInvalidValues) {
-  const ModelGenerator& chain = model_generators()[1];
+  const io::ModelGenerator& chain = io::model_generators()[1];
   const auto message = [&](const std::map<std::string, std::string>& values) -> std::string {
     try {
-      (void)generate_model(chain, values);
+      (void)io::generate_model(chain, values);
     } catch (const InputError& error) {
       return error.what();
     }

@@ -12,23 +12,24 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// SI value at t of a text, read as a value of this dimension; NaN if it is refused.
-double value(const std::string& text, const Dimension& wanted = {}, const UnitSystem& units = {},
-             const Variables& variables = {}, double t = 0.0) {
-  ExpressionFault fault;
-  const auto expression = Expression::parse(text, variables, units, true, fault);
+double value(const std::string& text, const io::Dimension& wanted = {},
+             const io::UnitSystem& units = {}, const io::Variables& variables = {},
+             double t = 0.0) {
+  io::ExpressionFault fault;
+  const auto expression = io::Expression::parse(text, variables, units, true, fault);
   if (!expression) return NAN;
   const auto factor = expression->factor_to_si(wanted, units);
   return factor ? *factor * (*expression)(t) : NAN;
 }
 
-std::string fault_of(const std::string& text, const Variables& variables = {}) {
-  ExpressionFault fault;
-  EXPECT_FALSE(Expression::parse(text, variables, {}, false, fault)) << text;
+std::string fault_of(const std::string& text, const io::Variables& variables = {}) {
+  io::ExpressionFault fault;
+  EXPECT_FALSE(io::Expression::parse(text, variables, {}, false, fault)) << text;
   return fault.what;
 }
 
-Quantity known(double si, const Dimension& d) { return {si, Certainty::kKnown, d}; }
-Quantity bare(double number) { return {number, Certainty::kBare, {}}; }
+io::Quantity known(double si, const io::Dimension& d) { return {si, io::Certainty::kKnown, d}; }
+io::Quantity bare(double number) { return {number, io::Certainty::kBare, {}}; }
 
 TEST(Expression, FollowsTheUsualPrecedence) {
   EXPECT_EQ(value("1 + 2*3"), 7.0);
@@ -47,7 +48,7 @@ TEST(Expression, FollowsTheUsualPrecedence) {
 
 TEST(Expression, EvaluatesAllListedFunctions) {
   EXPECT_DOUBLE_EQ(value("sin(pi/6)"), std::sin(kPi / 6));
-  EXPECT_DOUBLE_EQ(value("atan2(1, -1)", dimensions::kAngle), std::atan2(1.0, -1.0));
+  EXPECT_DOUBLE_EQ(value("atan2(1, -1)", io::dimensions::kAngle), std::atan2(1.0, -1.0));
   EXPECT_DOUBLE_EQ(value("sqrt(2)*exp(1) + log(3) - log10(5)"),
                    std::sqrt(2.0) * std::exp(1.0) + std::log(3.0) - std::log10(5.0));
   EXPECT_EQ(value("min(1, 2) + max(3, 4) + abs(-5) + sign(-2) + floor(2.5)"), 11.0);
@@ -55,66 +56,66 @@ TEST(Expression, EvaluatesAllListedFunctions) {
 }
 
 TEST(Expression, TakesAUnitAfterAnExpression) {
-  EXPECT_DOUBLE_EQ(value("30 deg", dimensions::kAngle), kPi / 6);
-  EXPECT_DOUBLE_EQ(value("2*pi rad/s", dimensions::kAngularVelocity), 2 * kPi);
-  EXPECT_DOUBLE_EQ(value("5 N/mm", dimensions::kStiffness), 5e3);
-  EXPECT_DOUBLE_EQ(value("-1 rad/s", dimensions::kAngularVelocity), -1.0);
+  EXPECT_DOUBLE_EQ(value("30 deg", io::dimensions::kAngle), kPi / 6);
+  EXPECT_DOUBLE_EQ(value("2*pi rad/s", io::dimensions::kAngularVelocity), 2 * kPi);
+  EXPECT_DOUBLE_EQ(value("5 N/mm", io::dimensions::kStiffness), 5e3);
+  EXPECT_DOUBLE_EQ(value("-1 rad/s", io::dimensions::kAngularVelocity), -1.0);
 }
 
 TEST(Expression, ChecksDimensions) {
-  EXPECT_TRUE(std::isnan(value("3 mm", dimensions::kMass)));
-  EXPECT_TRUE(std::isnan(value("30 deg", dimensions::kNone)));
-  const Variables v = {{"L", known(0.5, dimensions::kLength)},
-                       {"m", known(2.0, dimensions::kMass)},
-                       {"w", known(3.0, dimensions::kAngularVelocity)}};
-  EXPECT_DOUBLE_EQ(value("w*L", dimensions::kVelocity, {}, v), 1.5);
-  EXPECT_DOUBLE_EQ(value("m*L^2/12", dimensions::kInertia, {}, v), 2.0 * 0.25 / 12);
-  EXPECT_DOUBLE_EQ(value("sqrt(L*L)", dimensions::kLength, {}, v), 0.5);
-  EXPECT_DOUBLE_EQ(value("L/(2*L)", dimensions::kNone, {}, v), 0.5);
-  EXPECT_TRUE(std::isnan(value("m*L", dimensions::kInertia, {}, v)));
+  EXPECT_TRUE(std::isnan(value("3 mm", io::dimensions::kMass)));
+  EXPECT_TRUE(std::isnan(value("30 deg", io::dimensions::kNone)));
+  const io::Variables v = {{"L", known(0.5, io::dimensions::kLength)},
+                           {"m", known(2.0, io::dimensions::kMass)},
+                           {"w", known(3.0, io::dimensions::kAngularVelocity)}};
+  EXPECT_DOUBLE_EQ(value("w*L", io::dimensions::kVelocity, {}, v), 1.5);
+  EXPECT_DOUBLE_EQ(value("m*L^2/12", io::dimensions::kInertia, {}, v), 2.0 * 0.25 / 12);
+  EXPECT_DOUBLE_EQ(value("sqrt(L*L)", io::dimensions::kLength, {}, v), 0.5);
+  EXPECT_DOUBLE_EQ(value("L/(2*L)", io::dimensions::kNone, {}, v), 0.5);
+  EXPECT_TRUE(std::isnan(value("m*L", io::dimensions::kInertia, {}, v)));
   EXPECT_EQ(fault_of("L + m", v), "'+' joins a length and a mass");
   EXPECT_EQ(fault_of("exp(L)", v), "exp() is given a length");
   EXPECT_EQ(fault_of("2^L", v), "the exponent is a length");
 }
 
 TEST(Expression, InfersUnitsOfVariablesFromTheirUse) {
-  const UnitSystem mm{.length = 1e-3};
-  const Variables v = {{"L", bare(100.0)},
-                       {"w", known(2.0, dimensions::kAngularVelocity)},
-                       {"d", known(0.02, dimensions::kLength)}};
-  EXPECT_DOUBLE_EQ(value("L/2", dimensions::kLength, mm, v), 0.05);
-  EXPECT_DOUBLE_EQ(value("w*L", dimensions::kVelocity, mm, v), 0.2);
-  EXPECT_DOUBLE_EQ(value("L + d", dimensions::kLength, mm, v), 0.12);
-  EXPECT_DOUBLE_EQ(value("d + 5", dimensions::kLength, mm, v), 0.025);
-  EXPECT_DOUBLE_EQ(value("5 + d", dimensions::kLength, mm, v), 0.025);
+  const io::UnitSystem mm{.length = 1e-3};
+  const io::Variables v = {{"L", bare(100.0)},
+                           {"w", known(2.0, io::dimensions::kAngularVelocity)},
+                           {"d", known(0.02, io::dimensions::kLength)}};
+  EXPECT_DOUBLE_EQ(value("L/2", io::dimensions::kLength, mm, v), 0.05);
+  EXPECT_DOUBLE_EQ(value("w*L", io::dimensions::kVelocity, mm, v), 0.2);
+  EXPECT_DOUBLE_EQ(value("L + d", io::dimensions::kLength, mm, v), 0.12);
+  EXPECT_DOUBLE_EQ(value("d + 5", io::dimensions::kLength, mm, v), 0.025);
+  EXPECT_DOUBLE_EQ(value("5 + d", io::dimensions::kLength, mm, v), 0.025);
   EXPECT_DOUBLE_EQ(value("d*L", {2, 0, 0, 0}, mm, v), 0.02 * 0.1);
 }
 
 TEST(Expression, UsesRadiansWhereAUnitContainsAnAngle) {
-  const UnitSystem deg{.angle = kPi / 180.0};
-  const Variables v = {{"a", bare(30.0)},
-                       {"w", known(2.0, dimensions::kAngularVelocity)},
-                       {"L", bare(3.0)},
-                       {"k", bare(2.0)},
-                       {"q", known(kPi / 6, dimensions::kAngle)}};
-  EXPECT_DOUBLE_EQ(value("2*a", dimensions::kAngle, deg, v), kPi / 3);
-  EXPECT_DOUBLE_EQ(value("w*L", dimensions::kVelocity, deg, v), 6.0);
-  EXPECT_DOUBLE_EQ(value("k*w", dimensions::kAngularVelocity, deg, v), 4.0);
-  EXPECT_DOUBLE_EQ(value("q + 30", dimensions::kAngle, deg, v), kPi / 3);
-  EXPECT_DOUBLE_EQ(value("asin(0.5)", dimensions::kAngle, deg, v), kPi / 6);
-  EXPECT_DOUBLE_EQ(value("sin(q)", dimensions::kNone, deg, v), 0.5);
+  const io::UnitSystem deg{.angle = kPi / 180.0};
+  const io::Variables v = {{"a", bare(30.0)},
+                           {"w", known(2.0, io::dimensions::kAngularVelocity)},
+                           {"L", bare(3.0)},
+                           {"k", bare(2.0)},
+                           {"q", known(kPi / 6, io::dimensions::kAngle)}};
+  EXPECT_DOUBLE_EQ(value("2*a", io::dimensions::kAngle, deg, v), kPi / 3);
+  EXPECT_DOUBLE_EQ(value("w*L", io::dimensions::kVelocity, deg, v), 6.0);
+  EXPECT_DOUBLE_EQ(value("k*w", io::dimensions::kAngularVelocity, deg, v), 4.0);
+  EXPECT_DOUBLE_EQ(value("q + 30", io::dimensions::kAngle, deg, v), kPi / 3);
+  EXPECT_DOUBLE_EQ(value("asin(0.5)", io::dimensions::kAngle, deg, v), kPi / 6);
+  EXPECT_DOUBLE_EQ(value("sin(q)", io::dimensions::kNone, deg, v), 0.5);
 }
 
 TEST(Expression, HasTimeInTheUnitOfTheFile) {
-  const UnitSystem ms{.time = 1e-3};
-  EXPECT_DOUBLE_EQ(value("t", dimensions::kNone, ms, {}, 0.005), 5.0);
-  const Variables v = {{"T", known(1.0, dimensions::kTime)}};
-  EXPECT_DOUBLE_EQ(value("sin(2*pi*t/T)", dimensions::kNone, ms, v, 0.125), std::sin(kPi / 4));
+  const io::UnitSystem ms{.time = 1e-3};
+  EXPECT_DOUBLE_EQ(value("t", io::dimensions::kNone, ms, {}, 0.005), 5.0);
+  const io::Variables v = {{"T", known(1.0, io::dimensions::kTime)}};
+  EXPECT_DOUBLE_EQ(value("sin(2*pi*t/T)", io::dimensions::kNone, ms, v, 0.125), std::sin(kPi / 4));
 }
 
 TEST(Expression, LocatesItsErrors) {
-  ExpressionFault fault;
-  EXPECT_FALSE(Expression::parse("1 + foo(2)", {}, {}, false, fault));
+  io::ExpressionFault fault;
+  EXPECT_FALSE(io::Expression::parse("1 + foo(2)", {}, {}, false, fault));
   EXPECT_EQ(fault.offset, 4U);
   EXPECT_EQ(fault.length, 3U);
   EXPECT_EQ(fault.what, "unknown name 'foo'");

@@ -8,16 +8,16 @@ namespace {
 
 std::string fault_of(const std::string& text) {
   try {
-    static_cast<void>(SourceTree::parse(text, "m.yaml"));
-  } catch (const ModelErrors& errors) {
+    static_cast<void>(io::SourceTree::parse(text, "m.yaml"));
+  } catch (const io::ModelErrors& errors) {
     return errors.diagnostics().front().what;
   }
   return "";
 }
 
 TEST(SourceTree, KeepsTheLocationOfEveryNode) {
-  const SourceTree tree = SourceTree::parse("a:\n  b: [1, {c: x}]\n", "m.yaml");
-  const SourceNode* b = tree.root().find("a")->find("b");
+  const io::SourceTree tree = io::SourceTree::parse("a:\n  b: [1, {c: x}]\n", "m.yaml");
+  const io::SourceNode* b = tree.root().find("a")->find("b");
   EXPECT_EQ(tree.root().find("a")->keys[0].column, 3);
   EXPECT_EQ(b->line, 2);
   EXPECT_EQ(b->column, 6);
@@ -27,14 +27,15 @@ TEST(SourceTree, KeepsTheLocationOfEveryNode) {
 }
 
 TEST(SourceTree, ReadsJsonAndWindowsLineEndings) {
-  const SourceTree tree = SourceTree::parse("\xEF\xBB\xBF{\"a\": [1,\r\n\"b\"]}\r\n", "m.json");
+  const io::SourceTree tree =
+      io::SourceTree::parse("\xEF\xBB\xBF{\"a\": [1,\r\n\"b\"]}\r\n", "m.json");
   EXPECT_EQ(tree.root().find("a")->children[1].text, "b");
   EXPECT_EQ(tree.root().find("a")->children[1].line, 2);
   EXPECT_TRUE(tree.root().find("a")->children[1].in_quotes);
 }
 
 TEST(SourceTree, AllowsOneDocumentWithItsMarkers) {
-  EXPECT_EQ(SourceTree::parse("---\na: 1\n...\n", "m").root().find("a")->text, "1");
+  EXPECT_EQ(io::SourceTree::parse("---\na: 1\n...\n", "m").root().find("a")->text, "1");
   EXPECT_EQ(fault_of("a: 1\n---\nb: 2\n"), "a second document starts here");
 }
 
@@ -75,17 +76,17 @@ TEST(SourceTree, RefusesDepthInEveryStyle) {
 }
 
 TEST(SourceTree, RefusesTooManyValuesAndBytes) {
-  SourceLimits limits;
+  io::SourceLimits limits;
   limits.nodes = 10;
-  EXPECT_THROW(static_cast<void>(SourceTree::parse("[1,2,3,4,5,6,7,8,9,10]", "m", limits)),
-               ModelErrors);
-  EXPECT_NO_THROW(static_cast<void>(SourceTree::parse("[1,2,3,4,5,6,7,8,9]", "m", limits)));
+  EXPECT_THROW(static_cast<void>(io::SourceTree::parse("[1,2,3,4,5,6,7,8,9,10]", "m", limits)),
+               io::ModelErrors);
+  EXPECT_NO_THROW(static_cast<void>(io::SourceTree::parse("[1,2,3,4,5,6,7,8,9]", "m", limits)));
   limits.bytes = 3;
-  EXPECT_THROW(static_cast<void>(SourceTree::parse("a: 1", "m", limits)), ModelErrors);
+  EXPECT_THROW(static_cast<void>(io::SourceTree::parse("a: 1", "m", limits)), io::ModelErrors);
 }
 
 TEST(Diagnostics, UnderlineTheValue) {
-  const SourceText text("m.yaml", "a: {b: [1, 2], c: \"x y\", d: word}  # note\né: µm\n");
+  const io::SourceText text("m.yaml", "a: {b: [1, 2], c: \"x y\", d: word}  # note\né: µm\n");
   const auto underlined = [&](int line, int column) {
     const std::string excerpt = text.excerpt(line, column);
     return excerpt.substr(excerpt.find('\n') + 1);
@@ -98,7 +99,7 @@ TEST(Diagnostics, UnderlineTheValue) {
 }
 
 TEST(Diagnostics, CutLongLines) {
-  const SourceText text("m.yaml", std::string(500, 'a') + " bad " + std::string(500, 'c'));
+  const io::SourceText text("m.yaml", std::string(500, 'a') + " bad " + std::string(500, 'c'));
   const std::string excerpt = text.excerpt(1, 502, 3);
   EXPECT_LT(excerpt.size(), 500U);
   EXPECT_NE(excerpt.find(" bad "), std::string::npos);

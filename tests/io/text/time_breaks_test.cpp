@@ -13,9 +13,9 @@
 namespace polhode::time_breaks_tests {
 namespace {
 
-std::shared_ptr<const Expression> expression(const std::string& text) {
-  ExpressionFault fault;
-  auto e = Expression::parse(text, {}, UnitSystem{}, true, fault);
+std::shared_ptr<const io::Expression> expression(const std::string& text) {
+  io::ExpressionFault fault;
+  auto e = io::Expression::parse(text, {}, io::UnitSystem{}, true, fault);
   EXPECT_TRUE(e) << text << ": " << fault.what;
   return e;
 }
@@ -130,26 +130,26 @@ TEST(ExpressionBounds, OfConstantPartsAreExact) {
 
 TEST(TableBreaks, AreThePoints) {
   const std::vector<double> t = {1.0, 2.0, 4.0}, v = {0.0, 1.0, 0.0};
-  const auto of = [&](Interpolation way, bool periodic, double until) {
+  const auto of = [&](io::Interpolation way, bool periodic, double until) {
     std::vector<double> times, derivatives;
-    for (const TimeBreak& b : breaks(TableFunction(t, v, way, periodic), until)) {
+    for (const TimeBreak& b : breaks(io::TableFunction(t, v, way, periodic), until)) {
       times.push_back(b.t);
       derivatives.push_back(b.derivative);
     }
     return std::pair(times, derivatives);
   };
   using List = std::vector<double>;
-  EXPECT_EQ(of(Interpolation::kStep, false, 9.0), std::pair(List{1, 2, 4}, List{0, 0, 0}));
-  EXPECT_EQ(of(Interpolation::kLinear, false, 3.0), std::pair(List{1, 2}, List{1, 1}));
-  EXPECT_EQ(of(Interpolation::kCubic, false, 9.0), std::pair(List{1, 2, 4}, List{1, 3, 1}));
-  EXPECT_EQ(of(Interpolation::kCubic, true, 9.0),
+  EXPECT_EQ(of(io::Interpolation::kStep, false, 9.0), std::pair(List{1, 2, 4}, List{0, 0, 0}));
+  EXPECT_EQ(of(io::Interpolation::kLinear, false, 3.0), std::pair(List{1, 2}, List{1, 1}));
+  EXPECT_EQ(of(io::Interpolation::kCubic, false, 9.0), std::pair(List{1, 2, 4}, List{1, 3, 1}));
+  EXPECT_EQ(of(io::Interpolation::kCubic, true, 9.0),
             std::pair(List{1, 2, 4, 5, 7, 8}, List{3, 3, 3, 3, 3, 3}));
 }
 
 TEST(TableBounds, HoldBetweenThePointsAndInLaterPeriods) {
   const std::vector<double> t = {0.0, 1.0, 1.5, 3.0}, v = {1.0, -2.0, 3.0, 1.0};
   for (const bool periodic : {false, true}) {
-    const TableFunction f(t, v, Interpolation::kCubic, periodic);
+    const io::TableFunction f(t, v, io::Interpolation::kCubic, periodic);
     for (double from = 0.0; from < 8.0; from += 0.17)
       for (const double length : {0.1, 0.7, 4.0}) {
         const TimeBounds b = f.bounds(from, from + length);

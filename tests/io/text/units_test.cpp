@@ -13,8 +13,8 @@ constexpr double kPi = std::numbers::pi;
 /// Relative rounding of a few multiplications.
 constexpr double kRounding = 1e-14;
 
-void expect_unit(const char* text, double factor, const Dimension& dimension) {
-  const UnitReading reading = read_unit(text);
+void expect_unit(const char* text, double factor, const io::Dimension& dimension) {
+  const io::UnitReading reading = io::read_unit(text);
   ASSERT_TRUE(reading.unit) << text << ": " << reading.what;
   EXPECT_NEAR(reading.unit->factor / factor, 1.0, kRounding) << text;
   EXPECT_TRUE(reading.unit->dimension.matches(dimension)) << text;
@@ -22,7 +22,7 @@ void expect_unit(const char* text, double factor, const Dimension& dimension) {
 }
 
 TEST(Units, HaveTheirFactorsToSi) {
-  using namespace dimensions;
+  using namespace io::dimensions;
   expect_unit("mm", 1e-3, kLength);
   expect_unit("kg", 1.0, kMass);
   expect_unit("t", 1e3, kMass);
@@ -37,7 +37,7 @@ TEST(Units, HaveTheirFactorsToSi) {
 }
 
 TEST(Units, AreComposedOfFactorsAndPowers) {
-  using namespace dimensions;
+  using namespace io::dimensions;
   expect_unit("N/mm", 1e3, kStiffness);
   expect_unit("kg m^2", 1.0, kInertia);
   expect_unit("kg*mm^2", 1e-6, kInertia);
@@ -50,27 +50,27 @@ TEST(Units, AreComposedOfFactorsAndPowers) {
 }
 
 TEST(Units, AreRefusedWhenTheyAreAmbiguousOrMalformed) {
-  EXPECT_FALSE(read_unit("kg/m s").unit);
-  EXPECT_FALSE(read_unit("").unit);
-  EXPECT_FALSE(read_unit("m^").unit);
-  EXPECT_FALSE(read_unit("(m").unit);
-  EXPECT_FALSE(read_unit("m)").unit);
-  EXPECT_FALSE(read_unit("m^99").unit);
-  EXPECT_FALSE(read_unit("((((((((((m))))))))))").unit);
+  EXPECT_FALSE(io::read_unit("kg/m s").unit);
+  EXPECT_FALSE(io::read_unit("").unit);
+  EXPECT_FALSE(io::read_unit("m^").unit);
+  EXPECT_FALSE(io::read_unit("(m").unit);
+  EXPECT_FALSE(io::read_unit("m)").unit);
+  EXPECT_FALSE(io::read_unit("m^99").unit);
+  EXPECT_FALSE(io::read_unit("((((((((((m))))))))))").unit);
 }
 
 TEST(UnitSystem, DerivesFactorsFromItsBaseUnits) {
-  const UnitSystem mm_kg_ms{.length = 1e-3, .mass = 1.0, .time = 1e-3, .angle = kPi / 180.0};
-  EXPECT_NEAR(mm_kg_ms.factor(dimensions::kForce), 1e3, 1e-11);     // kg mm/ms².
-  EXPECT_NEAR(mm_kg_ms.factor(dimensions::kStiffness), 1e6, 1e-8);  // kg/ms².
-  EXPECT_NEAR(mm_kg_ms.factor(dimensions::kAngularVelocity), 1e3 * kPi / 180.0, 1e-12);
-  EXPECT_EQ(UnitSystem{}.factor(dimensions::kDensity), 1.0);
+  const io::UnitSystem mm_kg_ms{.length = 1e-3, .mass = 1.0, .time = 1e-3, .angle = kPi / 180.0};
+  EXPECT_NEAR(mm_kg_ms.factor(io::dimensions::kForce), 1e3, 1e-11);     // kg mm/ms².
+  EXPECT_NEAR(mm_kg_ms.factor(io::dimensions::kStiffness), 1e6, 1e-8);  // kg/ms².
+  EXPECT_NEAR(mm_kg_ms.factor(io::dimensions::kAngularVelocity), 1e3 * kPi / 180.0, 1e-12);
+  EXPECT_EQ(io::UnitSystem{}.factor(io::dimensions::kDensity), 1.0);
 }
 
 TEST(Dimension, IsNamedForMessages) {
-  EXPECT_EQ(dimensions::kMass.name(), "a mass");
-  EXPECT_EQ((Dimension{4, 1, 0, 0}).name(), "a quantity in kg m^4");
-  EXPECT_EQ(dimensions::kAngularStiffness.si_unit(), "N m/rad");
+  EXPECT_EQ(io::dimensions::kMass.name(), "a mass");
+  EXPECT_EQ((io::Dimension{4, 1, 0, 0}).name(), "a quantity in kg m^4");
+  EXPECT_EQ(io::dimensions::kAngularStiffness.si_unit(), "N m/rad");
 }
 
 }  // namespace

@@ -18,14 +18,16 @@ struct Line : TimeFunction {
 };
 
 /// A load on all of one distorted cell.
-SolidLoadDescription description(const SolidLoadKind& kind, const ElementKind& element,
-                                 std::span<const Vec3> X, double slope) {
+solids::SolidLoadDescription description(const solids::SolidLoadKind& kind,
+                                         const solids::ElementKind& element,
+                                         std::span<const Vec3> X, double slope) {
   const auto number = [&](double v) { return std::make_shared<Line>(v, v * slope); };
-  SolidLoadDescription d{.name = "loads.x", .X = {X.begin(), X.end()}, .density = 1000.0};
+  solids::SolidLoadDescription d{.name = "loads.x", .X = {X.begin(), X.end()}, .density = 1000.0};
   if (kind.value) d.value = number(3.0);
   if (kind.vector) d.vector = {number(1.0), nullptr, number(-2.0)};
   for (const Parameter& p : kind.parameters) d.values[p.name] = p.standard.value_or(1.0);
-  for (const CellFace& face : element.cell().faces) d.faces.push_back({face.type, face.nodes});
+  for (const solids::CellFace& face : element.cell().faces)
+    d.faces.push_back({face.type, face.nodes});
   for (int i = 0; i < element.sizes().nodes; ++i) d.nodes.push_back(i);
   d.elements = {{element.name, d.nodes}};
   return d;
@@ -33,9 +35,9 @@ SolidLoadDescription description(const SolidLoadKind& kind, const ElementKind& e
 
 /// A load is external and has its tangent. Its work over a step at ρ∞ = 1 is force times
 /// displacement, stored energy if it is dead and constant, else supplied.
-void check_laws(const SolidLoadKind& kind, const SolidLoadDescription& d, const SolidStep& moved,
-                bool potential) {
-  const ElementGroups groups = kind.make(d);
+void check_laws(const solids::SolidLoadKind& kind, const solids::SolidLoadDescription& d,
+                const SolidStep& moved, bool potential) {
+  const solids::ElementGroups groups = kind.make(d);
   ASSERT_FALSE(groups.empty());
   for (const std::unique_ptr<ElementGroup>& group : groups) {
     SolidStep step = moved;
@@ -68,18 +70,19 @@ void check_laws(const SolidLoadKind& kind, const SolidLoadDescription& d, const 
 
 TEST(SolidLoadRegistry, HasKindsThatObeyTheLawsOfLoads) {
   Random random{7};
-  const ElementKind& element = element_kind("hex20");
+  const solids::ElementKind& element = solids::element_kind("hex20");
   const std::vector<Vec3> X = distorted_element(element, random);
   SolidStep step(X, context_of(1.0));
   step.move_at_random(random, 0.1, 0.3);
-  for (const SolidLoadKind& kind : solid_load_kinds()) {
+  for (const solids::SolidLoadKind& kind : solids::solid_load_kinds()) {
     SCOPED_TRACE(kind.name);
     EXPECT_NE(kind.value.has_value(), kind.vector.has_value());
     for (const double slope : {0.0, 0.5}) {
-      SolidLoadDescription d = description(kind, element, X, slope);
+      solids::SolidLoadDescription d = description(kind, element, X, slope);
       check_laws(kind, d, step, slope == 0.0);
       if (!kind.can_follow) continue;
-      for (const FollowerRule rule : {FollowerRule::kMomentum, FollowerRule::kWork}) {
+      for (const solids::FollowerRule rule :
+           {solids::FollowerRule::kMomentum, solids::FollowerRule::kWork}) {
         d.follower = rule;
         check_laws(kind, d, step, false);
       }
@@ -89,7 +92,7 @@ TEST(SolidLoadRegistry, HasKindsThatObeyTheLawsOfLoads) {
 
 TEST(SolidLoadRegistry, ListsTheNamesWhenOneIsUnknown) {
   try {
-    (void)solid_load_kind("loads.x.type", "torque");
+    (void)solids::solid_load_kind("loads.x.type", "torque");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),

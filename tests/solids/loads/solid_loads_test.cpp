@@ -28,22 +28,22 @@ TimeFunctionPtr constant(double v) { return std::make_shared<Value>(v); }
 /// The whole boundary of one distorted cell.
 struct Closed {
   Random random{5};
-  const ElementKind& kind;
+  const solids::ElementKind& kind;
   std::vector<Vec3> X;
-  std::vector<LoadedFaces> faces;
+  std::vector<solids::LoadedFaces> faces;
 
-  explicit Closed(const std::string& element) : kind(element_kind(element)) {
+  explicit Closed(const std::string& element) : kind(solids::element_kind(element)) {
     X = distorted_element(kind, random);
-    for (const CellFace& face : kind.cell().faces) faces.push_back({face.type, face.nodes});
+    for (const solids::CellFace& face : kind.cell().faces) faces.push_back({face.type, face.nodes});
   }
   /// Volume inside the faces: ∫ x·n dA/3 by the faces themselves.
   [[nodiscard]] double volume(const Vec& x) const {
     double sum = 0.0;
-    for (const LoadedFaces& f : faces) {
-      const CellShape& shape = cell_shape(f.shape);
-      for (const QuadraturePoint& q : face_rule(f.shape)) {
-        const Vec N = shape_functions(shape, q.xi);
-        const Mat D = shape_gradients(shape, q.xi);
+    for (const solids::LoadedFaces& f : faces) {
+      const solids::CellShape& shape = solids::cell_shape(f.shape);
+      for (const solids::QuadraturePoint& q : solids::face_rule(f.shape)) {
+        const Vec N = solids::shape_functions(shape, q.xi);
+        const Mat D = solids::shape_gradients(shape, q.xi);
         Vec3 at = Vec3::Zero(), xi = Vec3::Zero(), eta = Vec3::Zero();
         for (int a = 0; a < shape.size(); ++a) {
           const Vec3 p = x.segment<3>(3 * f.nodes[static_cast<std::size_t>(a)]);
@@ -66,8 +66,9 @@ TEST_P(ClosedSurface, HasNoMomentByOneRuleAndExactWorkByTheOther) {
   SolidStep step(cell.X, context_of(1.0));
   step.move_at_random(cell.random, 0.1, 0.3);
   const double p = 3.0;
-  for (const FollowerRule rule : {FollowerRule::kMomentum, FollowerRule::kWork}) {
-    const auto groups = make_follower_pressure("loads.p", cell.faces, constant(p), rule);
+  for (const solids::FollowerRule rule :
+       {solids::FollowerRule::kMomentum, solids::FollowerRule::kWork}) {
+    const auto groups = solids::make_follower_pressure("loads.p", cell.faces, constant(p), rule);
     Vec force = Vec::Zero(step.x_n.size());
     double put_in = 0.0;
     for (const auto& group : groups) {
@@ -83,7 +84,7 @@ TEST_P(ClosedSurface, HasNoMomentByOneRuleAndExactWorkByTheOther) {
     EXPECT_LT(sum.norm(), 1e-13 * p * 24.0);  // area of a cell
     EXPECT_NEAR(put_in, force.dot(step.x_n1 - step.x_n), 1e-12 * p * 8.0);
     const double work = -p * (cell.volume(step.x_n1) - cell.volume(step.x_n));
-    if (rule == FollowerRule::kMomentum) {
+    if (rule == solids::FollowerRule::kMomentum) {
       EXPECT_LT(moment.norm(), 1e-13 * p * 24.0 * step.x_n.norm());
       EXPECT_GT(std::abs(put_in - work), 1e-6 * std::abs(work));
     } else {
@@ -95,11 +96,12 @@ TEST_P(ClosedSurface, HasNoMomentByOneRuleAndExactWorkByTheOther) {
 TEST_P(ClosedSurface, HasTheTangentOfItsForces) {
   Closed cell(GetParam());
   for (const double rho_inf : {1.0, 0.25})
-    for (const FollowerRule rule : {FollowerRule::kMomentum, FollowerRule::kWork}) {
+    for (const solids::FollowerRule rule :
+         {solids::FollowerRule::kMomentum, solids::FollowerRule::kWork}) {
       SolidStep step(cell.X, context_of(rho_inf));
       step.move_at_random(cell.random, 0.1, 0.3);
-      const auto groups =
-          make_follower_pressure("loads.p", cell.faces, std::make_shared<Value>(2.0, 1.0), rule);
+      const auto groups = solids::make_follower_pressure("loads.p", cell.faces,
+                                                         std::make_shared<Value>(2.0, 1.0), rule);
       for (const auto& group : groups) {
         step.begin(*group);
         expect_derivative(
@@ -118,9 +120,9 @@ TEST_P(ClosedSurface, HasTheResultantsOfTractionAndPressure) {
   Closed cell(GetParam());
   SolidStep step(cell.X, context_of(1.0));
   step.move_at_random(cell.random, 0.1);
-  const auto pressure = make_dead_pressure("loads.p", cell.faces, cell.X, constant(3.0));
-  const auto traction =
-      make_traction("loads.t", cell.faces, cell.X, {constant(1.0), nullptr, constant(-2.0)});
+  const auto pressure = solids::make_dead_pressure("loads.p", cell.faces, cell.X, constant(3.0));
+  const auto traction = solids::make_traction("loads.t", cell.faces, cell.X,
+                                              {constant(1.0), nullptr, constant(-2.0)});
   step.begin(*pressure);
   const Vec push = step.evaluate(*pressure).force, pull = step.evaluate(*traction).force;
   Vec3 sum = Vec3::Zero(), total = Vec3::Zero();
@@ -149,15 +151,15 @@ TEST_P(ClosedSurface, DistributesTheWeightOfItsVolumeOverItsNodes) {
   std::vector<int> connectivity;
   for (int i = 0; i < cell.kind.sizes().nodes; ++i) connectivity.push_back(i);
   const auto load =
-      make_body_force("loads.b", cell.kind.name, connectivity, cell.X,
-                      {constant(2.0), std::make_shared<Value>(0.0, 1.0), nullptr}, 1000.0);
+      solids::make_body_force("loads.b", cell.kind.name, connectivity, cell.X,
+                              {constant(2.0), std::make_shared<Value>(0.0, 1.0), nullptr}, 1000.0);
   SolidStep step(cell.X, context_of(1.0, 0.2, 0.4));  // t_{n+αf} = 0.5
   step.begin(*load);
   step.move_at_random(cell.random, 0.1);
   step.context.load_factor = 0.5;
   const Vec force = step.evaluate(*load).force;
   double M[27 * 27];
-  element_mass(cell.kind, 1000.0, connectivity, cell.X, M);
+  solids::element_mass(cell.kind, 1000.0, connectivity, cell.X, M);
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < step.nodes(); ++i) sum += force.segment<3>(3 * i);
   double mass = 0.0;
@@ -177,7 +179,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ClosedSurface,
 
 TEST(SolidLoads, PutTheSameForceOnEveryNode) {
   Closed cell("hex8_standard");
-  const auto load = make_nodal_force("loads.f", {1, 5}, cell.X, {nullptr, constant(4.0), nullptr});
+  const auto load =
+      solids::make_nodal_force("loads.f", {1, 5}, cell.X, {nullptr, constant(4.0), nullptr});
   SolidStep step(cell.X, context_of(1.0));
   step.begin(*load);
   const Vec force = step.evaluate(*load).force;
@@ -188,10 +191,10 @@ TEST(SolidLoads, PutTheSameForceOnEveryNode) {
 
 TEST(SolidLoads, AreRefusedWithoutFacesOrNodes) {
   const std::vector<Vec3> X(4, Vec3::Zero());
-  EXPECT_THROW(make_traction("loads.t", {}, X, {}), InputError);
-  EXPECT_THROW(make_nodal_force("loads.f", {}, X, {}), InputError);
-  const std::vector<LoadedFaces> lines = {{"line2", {0, 1}}};
-  EXPECT_THROW(make_dead_pressure("loads.p", lines, X, constant(1.0)), InputError);
+  EXPECT_THROW(solids::make_traction("loads.t", {}, X, {}), InputError);
+  EXPECT_THROW(solids::make_nodal_force("loads.f", {}, X, {}), InputError);
+  const std::vector<solids::LoadedFaces> lines = {{"line2", {0, 1}}};
+  EXPECT_THROW(solids::make_dead_pressure("loads.p", lines, X, constant(1.0)), InputError);
 }
 
 }  // namespace

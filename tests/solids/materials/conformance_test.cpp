@@ -28,28 +28,30 @@ Vec6 strain(Random& random, double size) {
 /// S : ΔE of symmetric tensors.
 double contract(const Vec6& S, const Vec6& E) { return S.dot(E) + S.tail<3>().dot(E.tail<3>()); }
 
-class EveryMaterial : public testing::TestWithParam<MaterialDescription> {
+class EveryMaterial : public testing::TestWithParam<solids::MaterialDescription> {
  protected:
-  std::unique_ptr<const Material> material_ = make_material("materials.m", GetParam());
+  std::unique_ptr<const solids::Material> material_ =
+      solids::make_material("materials.m", GetParam());
   Vec3 A_ = Vec3(1.0, 2.0, -1.5).normalized();
   double modulus_ = material_->bulk_modulus();
 };
 
 TEST_P(EveryMaterial, IsFreeOfStressAndEnergyAtRest) {
-  const MaterialPoint rest = discrete_stress(*material_, Vec6::Zero(), Vec6::Zero(), A_);
+  const solids::MaterialPoint rest =
+      solids::discrete_stress(*material_, Vec6::Zero(), Vec6::Zero(), A_);
   EXPECT_EQ(rest.S.norm(), 0.0);
-  EXPECT_EQ(strain_energy(*material_, Vec6::Zero(), A_), 0.0);
+  EXPECT_EQ(solids::strain_energy(*material_, Vec6::Zero(), A_), 0.0);
 }
 
 TEST_P(EveryMaterial, HasTheStatedLinearModuliAtRest) {
   if (material_->has_fibres()) GTEST_SKIP() << "fibres resist in tension only";
-  const LinearModuli m = material_->linear();
+  const solids::LinearModuli m = material_->linear();
   Mat6 D = Mat6::Zero();
   D.topLeftCorner<3, 3>().setConstant(m.lame);
   D.diagonal().array() += m.shear;
   D.diagonal().head<3>().array() += m.shear;
   // The derivative by one of two equal ends is half of the derivative.
-  const Mat6 half = discrete_stress(*material_, Vec6::Zero(), Vec6::Zero(), A_).D;
+  const Mat6 half = solids::discrete_stress(*material_, Vec6::Zero(), Vec6::Zero(), A_).D;
   EXPECT_LT((2.0 * half - D).norm(), 1e-14 * D.norm());
 }
 
@@ -62,10 +64,10 @@ TEST_P(EveryMaterial, ReturnsExactlyTheEnergyItStoresInStepsOfAnySize) {
       for (int i = 0; i < 20; ++i) {
         const Vec6 E_0 = strain(random, start);
         const Vec6 E_1 = E_0 + step * (strain(random, 0.3));
-        const Vec6 S = discrete_stress(*material_, E_0, E_1, A_).S;
+        const Vec6 S = solids::discrete_stress(*material_, E_0, E_1, A_).S;
         const double work = contract(S, E_1 - E_0);
-        const double W_0 = strain_energy(*material_, E_0, A_);
-        const double W_1 = strain_energy(*material_, E_1, A_);
+        const double W_0 = solids::strain_energy(*material_, E_0, A_);
+        const double W_1 = solids::strain_energy(*material_, E_1, A_);
         // Rounding of the strains, times the stress, and of the energies themselves.
         const double size = std::max({start, step, 1e-3});
         const double tolerance = 100.0 * 2.2e-16 *
@@ -79,13 +81,13 @@ TEST_P(EveryMaterial, HasTheStressOfItsEnergyWhenNothingMoves) {
   Random random(2);
   for (int i = 0; i < 10; ++i) {
     const Vec6 E = strain(random, 0.2);
-    const Vec6 S = discrete_stress(*material_, E, E, A_).S;
+    const Vec6 S = solids::discrete_stress(*material_, E, E, A_).S;
     Vec6 scaled = S / modulus_;
     scaled.tail<3>() *= 2.0;
     expect_derivative(
         scaled.transpose(),
         [&](const Vec& d) -> Vec {
-          return Vec::Constant(1, strain_energy(*material_, E + d, A_) / modulus_);
+          return Vec::Constant(1, solids::strain_energy(*material_, E + d, A_) / modulus_);
         },
         "stress", 1e-8);
   }
@@ -97,14 +99,14 @@ TEST_P(EveryMaterial, HasTheTangentOfItsDiscreteStress) {
     for (int i = 0; i < 10; ++i) {
       const Vec6 E_0 = strain(random, 0.2);
       const Vec6 E_1 = E_0 + step * strain(random, 1.0);
-      Mat6 D = discrete_stress(*material_, E_0, E_1, A_).D / modulus_;
+      Mat6 D = solids::discrete_stress(*material_, E_0, E_1, A_).D / modulus_;
       D.rightCols<3>() *= 2.0;
       // A switch of the fibres within the stencil makes differences less accurate.
       const double tolerance = material_->has_fibres() ? 1e-4 : 1e-8;
       expect_derivative(
           D,
           [&](const Vec& d) -> Vec {
-            return discrete_stress(*material_, E_0, E_1 + d, A_).S / modulus_;
+            return solids::discrete_stress(*material_, E_0, E_1 + d, A_).S / modulus_;
           },
           "D", tolerance);
     }
@@ -114,15 +116,15 @@ TEST_P(EveryMaterial, HasTheTangentOfItsDiscreteStress) {
 TEST_P(EveryMaterial, HasASymmetricTangentWhenNothingMoves) {
   Random random(4);
   const Vec6 E = strain(random, 0.2);
-  const Mat6 D = discrete_stress(*material_, E, E, A_).D;
+  const Mat6 D = solids::discrete_stress(*material_, E, E, A_).D;
   EXPECT_LT((D - D.transpose()).norm(), 1e-14 * D.norm());
 }
 
 TEST_P(EveryMaterial, HasAStressSymmetricInBothEnds) {
   Random random(5);
   const Vec6 E_0 = strain(random, 0.2), E_1 = strain(random, 0.2);
-  const Vec6 there = discrete_stress(*material_, E_0, E_1, A_).S;
-  const Vec6 back = discrete_stress(*material_, E_1, E_0, A_).S;
+  const Vec6 there = solids::discrete_stress(*material_, E_0, E_1, A_).S;
+  const Vec6 back = solids::discrete_stress(*material_, E_1, E_0, A_).S;
   EXPECT_LT((there - back).norm(), 1e-14 * modulus_);
 }
 
@@ -130,7 +132,7 @@ TEST_P(EveryMaterial, HasNoFiniteEnergyInAnInvertedVolume) {
   Vec6 flat = Vec6::Zero();
   flat[0] = -0.5;
   if (GetParam().kind == "elastic") GTEST_SKIP() << "its energy does not depend on the volume";
-  EXPECT_FALSE(std::isfinite(strain_energy(*material_, flat, A_)));
+  EXPECT_FALSE(std::isfinite(solids::strain_energy(*material_, flat, A_)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryMaterial, testing::ValuesIn(example_materials()),
@@ -138,25 +140,26 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryMaterial, testing::ValuesIn(example_mate
 
 // Closed forms, written with C and its inverse.
 TEST(NeoHookean, HasTheStressOfTheTextbook) {
-  const auto m = make_material(
+  const auto m = solids::make_material(
       "m", {.kind = "neo_hookean", .values = {{"lame", 3e6}, {"shear_modulus", 1e6}}});
   Mat3 F;
   F << 1.3, 0.2, -0.1, 0.05, 0.9, 0.3, 0.1, -0.2, 1.1;
   const Mat3 C = F.transpose() * F, C_inverse = C.inverse();
   const Mat3 S = 1e6 * (Mat3::Identity() - C_inverse) + 3e6 * std::log(F.determinant()) * C_inverse;
   const Vec6 E = voigt(0.5 * (C - Mat3::Identity()));
-  EXPECT_LT((discrete_stress(*m, E, E).S - voigt(S)).norm(), 1e-14 * S.norm());
+  EXPECT_LT((solids::discrete_stress(*m, E, E).S - voigt(S)).norm(), 1e-14 * S.norm());
 }
 
 TEST(MooneyRivlinUncoupled, SplitsStressIntoDeviatorAndPressure) {
-  const auto m = make_material("m", {.kind = "mooney_rivlin_uncoupled",
-                                     .values = {{"c1", 3e5}, {"c2", 2e5}, {"bulk_modulus", 1e9}}});
+  const auto m =
+      solids::make_material("m", {.kind = "mooney_rivlin_uncoupled",
+                                  .values = {{"c1", 3e5}, {"c2", 2e5}, {"bulk_modulus", 1e9}}});
   Mat3 F;
   F << 1.3, 0.2, -0.1, 0.05, 0.9, 0.3, 0.1, -0.2, 1.1;
   const double J = F.determinant();
   const Vec6 E = voigt(0.5 * (F.transpose() * F - Mat3::Identity()));
   const auto pressure = [&](bool whole) {
-    const Vec6 s = discrete_stress(*m, E, E, Vec3::UnitX(), whole).S;
+    const Vec6 s = solids::discrete_stress(*m, E, E, Vec3::UnitX(), whole).S;
     Mat3 S;
     S << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
     return (F * S * F.transpose()).trace() / (3.0 * J);
@@ -167,35 +170,36 @@ TEST(MooneyRivlinUncoupled, SplitsStressIntoDeviatorAndPressure) {
 
 // A fibre that goes from slack to taut in one step: the work is the energy of the taut part only.
 TEST(Fibres, AreExactAcrossTheSwitchWithinAStep) {
-  const auto with = make_material("m", {.kind = "neo_hookean",
-                                        .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
-                                        .fibre = "exponential",
-                                        .fibre_values = {{"xi", 10.0}, {"alpha", 3.0}}});
-  const auto without = make_material(
+  const auto with = solids::make_material("m", {.kind = "neo_hookean",
+                                                .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
+                                                .fibre = "exponential",
+                                                .fibre_values = {{"xi", 10.0}, {"alpha", 3.0}}});
+  const auto without = solids::make_material(
       "m", {.kind = "neo_hookean", .values = {{"lame", 1.0}, {"shear_modulus", 1.0}}});
   for (const double size : {0.2, 1e-2, 1e-5, 1e-9}) {
     Vec6 E_0 = Vec6::Zero(), E_1 = Vec6::Zero();
     E_0[0] = -0.3 * size;
     E_1[0] = 0.7 * size;
-    const Vec6 S = discrete_stress(*with, E_0, E_1).S - discrete_stress(*without, E_0, E_1).S;
-    const double W = strain_energy(*with, E_1) - strain_energy(*without, E_1);
+    const Vec6 S =
+        solids::discrete_stress(*with, E_0, E_1).S - solids::discrete_stress(*without, E_0, E_1).S;
+    const double W = solids::strain_energy(*with, E_1) - solids::strain_energy(*without, E_1);
     EXPECT_NEAR(S[0] * size, W, 4e-15 * W + 1e-15 * size * size) << size;
     EXPECT_GT(W, 0.0);
-    EXPECT_EQ(discrete_stress(*with, E_0, 0.5 * E_0).S,
-              discrete_stress(*without, E_0, 0.5 * E_0).S);
+    EXPECT_EQ(solids::discrete_stress(*with, E_0, 0.5 * E_0).S,
+              solids::discrete_stress(*without, E_0, 0.5 * E_0).S);
   }
 }
 
 // λ dF/dλ = c₃ (exp(c₄ (λ − 1)) − 1): the energy by fine sums of the trapezoidal rule.
 TEST(ToeFibre, HasTheForceOfItsLaw) {
   const double c3 = 2.0, c4 = 30.0, c5 = 500.0, m = 1.1;
-  const auto material = make_material(
+  const auto material = solids::make_material(
       "m", {.kind = "elastic",
             .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
             .fibre = "toe",
             .fibre_values = {{"c3", c3}, {"c4", c4}, {"c5", c5}, {"straight_stretch", m}}});
-  const auto plain =
-      make_material("m", {.kind = "elastic", .values = {{"lame", 1.0}, {"shear_modulus", 1.0}}});
+  const auto plain = solids::make_material(
+      "m", {.kind = "elastic", .values = {{"lame", 1.0}, {"shear_modulus", 1.0}}});
   const auto law = [&](double stretch) {
     const double c6 = c3 * std::expm1(c4 * (m - 1.0)) - c5 * m;
     return stretch < m ? c3 * std::expm1(c4 * (stretch - 1.0)) : c5 * stretch + c6;
@@ -203,7 +207,8 @@ TEST(ToeFibre, HasTheForceOfItsLaw) {
   for (const double stretch : {1.02, 1.09, 1.2}) {
     Vec6 E = Vec6::Zero();
     E[0] = 0.5 * (stretch * stretch - 1.0);
-    const double S = discrete_stress(*material, E, E).S[0] - discrete_stress(*plain, E, E).S[0];
+    const double S =
+        solids::discrete_stress(*material, E, E).S[0] - solids::discrete_stress(*plain, E, E).S[0];
     // S = dF/dE = (dF/dλ)/λ.
     EXPECT_NEAR(S, law(stretch) / (stretch * stretch), 1e-12 * S);
     const int n = 20000;
@@ -212,7 +217,8 @@ TEST(ToeFibre, HasTheForceOfItsLaw) {
       const double h = (stretch - 1.0) / n, a = 1.0 + (i + 0.5) * h;
       sum += h * law(a) / a;
     }
-    EXPECT_NEAR(strain_energy(*material, E) - strain_energy(*plain, E), sum, 1e-6 * sum);
+    EXPECT_NEAR(solids::strain_energy(*material, E) - solids::strain_energy(*plain, E), sum,
+                1e-6 * sum);
   }
 }
 

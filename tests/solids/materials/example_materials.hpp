@@ -10,8 +10,8 @@
 namespace polhode::test {
 
 /// Some values that a kind accepts: its first alternative, moduli of a soft solid.
-inline ParameterValues example_values(const MaterialKind& kind) {
-  ParameterValues values;
+inline solids::ParameterValues example_values(const solids::MaterialKind& kind) {
+  solids::ParameterValues values;
   for (const Parameter& p : kind.parameters) {
     bool chosen = true;
     for (std::size_t i = 0; i < kind.alternatives.size(); ++i)
@@ -28,11 +28,11 @@ inline ParameterValues example_values(const MaterialKind& kind) {
 }
 
 /// Every material of the registry, without fibres and with those of every law.
-inline std::vector<MaterialDescription> example_materials() {
-  std::vector<MaterialDescription> all;
-  for (const MaterialKind& kind : material_kinds()) {
+inline std::vector<solids::MaterialDescription> example_materials() {
+  std::vector<solids::MaterialDescription> all;
+  for (const solids::MaterialKind& kind : solids::material_kinds()) {
     all.push_back({.kind = kind.name, .values = example_values(kind)});
-    for (const MaterialKind& fibre : fibre_kinds())
+    for (const solids::MaterialKind& fibre : solids::fibre_kinds())
       all.push_back({.kind = kind.name,
                      .values = example_values(kind),
                      .fibre = fibre.name,
@@ -41,7 +41,7 @@ inline std::vector<MaterialDescription> example_materials() {
   return all;
 }
 
-inline std::string label(const MaterialDescription& d) {
+inline std::string label(const solids::MaterialDescription& d) {
   return d.kind + (d.fibre.empty() ? "" : "_with_" + d.fibre);
 }
 

@@ -13,8 +13,8 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-auto make(MaterialDescription d) {
-  return [d] { (void)make_material("materials.rubber", d); };
+auto make(solids::MaterialDescription d) {
+  return [d] { (void)solids::make_material("materials.rubber", d); };
 }
 template <class... Part>
 auto refused(Part... part) {
@@ -22,11 +22,11 @@ auto refused(Part... part) {
 }
 
 TEST(MaterialRegistry, TakesYoungsModulusOrOtherPairs) {
-  const auto a = make_material(
+  const auto a = solids::make_material(
       "m", {.kind = "elastic", .values = {{"youngs_modulus", 210e9}, {"poisson_ratio", 0.3}}});
-  const auto b =
-      make_material("m", {.kind = "st_venant_kirchhoff",
-                          .values = {{"bulk_modulus", 175e9}, {"shear_modulus", 210e9 / 2.6}}});
+  const auto b = solids::make_material(
+      "m", {.kind = "st_venant_kirchhoff",
+            .values = {{"bulk_modulus", 175e9}, {"shear_modulus", 210e9 / 2.6}}});
   EXPECT_NEAR(a->linear().lame, b->linear().lame, 1e-4);
   EXPECT_NEAR(a->linear().shear, b->linear().shear, 1e-4);
 }
@@ -67,14 +67,14 @@ TEST(MaterialRegistry, NamesMissingUnknownAndSuperfluousValues) {
 }
 
 TEST(MaterialRegistry, TakesViscosityAsATimeOrAsModuli) {
-  const ParameterValues values = {{"youngs_modulus", 2.6}, {"poisson_ratio", 0.3}};
+  const solids::ParameterValues values = {{"youngs_modulus", 2.6}, {"poisson_ratio", 0.3}};
   const auto m =
-      make_material("m", {.kind = "neo_hookean", .values = values, .relaxation_time = 2.0});
+      solids::make_material("m", {.kind = "neo_hookean", .values = values, .relaxation_time = 2.0});
   EXPECT_DOUBLE_EQ(m->viscous_moduli().shear, 2.0 * m->linear().shear);
   EXPECT_DOUBLE_EQ(m->viscous_moduli().lame, 2.0 * m->linear().lame);
-  const auto u = make_material("m", {.kind = "mooney_rivlin_uncoupled",
-                                     .values = {{"c1", 1.0}, {"bulk_modulus", 1e4}},
-                                     .relaxation_time = 0.1});
+  const auto u = solids::make_material("m", {.kind = "mooney_rivlin_uncoupled",
+                                             .values = {{"c1", 1.0}, {"bulk_modulus", 1e4}},
+                                             .relaxation_time = 0.1});
   EXPECT_NEAR(u->viscous_moduli().lame + 2.0 / 3.0 * u->viscous_moduli().shear, 0.0, 1e-16);
   EXPECT_THAT(make({.kind = "neo_hookean", .values = values, .relaxation_time = -1.0}),
               refused("relaxation_time"));

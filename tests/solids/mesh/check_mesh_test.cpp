@@ -9,16 +9,16 @@
 namespace polhode::check_mesh_tests {
 namespace {
 
-Mesh block(int cells, double at = 0.0) {
-  Mesh mesh = make_mesh("pad.msh", "block",
-                        {{"size", {1.0 * cells, 1, 1}}, {"cells", {1.0 * cells, 1, 1}}}, "hex8");
-  move(mesh, Mat3::Identity(), {at, 0, 0});
+solids::Mesh block(int cells, double at = 0.0) {
+  solids::Mesh mesh = solids::make_mesh(
+      "pad.msh", "block", {{"size", {1.0 * cells, 1, 1}}, {"cells", {1.0 * cells, 1, 1}}}, "hex8");
+  solids::move(mesh, Mat3::Identity(), {at, 0, 0});
   return mesh;
 }
 
 /// Both meshes in one, with separate nodes.
-Mesh both(const Mesh& a, const Mesh& b) {
-  Mesh sum = a;
+solids::Mesh both(const solids::Mesh& a, const solids::Mesh& b) {
+  solids::Mesh sum = a;
   const int shift = static_cast<int>(a.nodes.size());
   sum.nodes.insert(sum.nodes.end(), b.nodes.begin(), b.nodes.end());
   for (int node : b.blocks[0].nodes) sum.blocks[0].nodes.push_back(node + shift);
@@ -26,13 +26,13 @@ Mesh both(const Mesh& a, const Mesh& b) {
 }
 
 TEST(CheckMesh, NamesInvertedElements) {
-  Mesh mesh = block(3);
+  solids::Mesh mesh = block(3);
   std::swap(mesh.blocks[0].nodes[8], mesh.blocks[0].nodes[9]);
   std::swap(mesh.blocks[0].nodes[10], mesh.blocks[0].nodes[11]);
   std::swap(mesh.blocks[0].nodes[12], mesh.blocks[0].nodes[13]);
   std::swap(mesh.blocks[0].nodes[14], mesh.blocks[0].nodes[15]);
   try {
-    check_mesh(mesh);
+    solids::check_mesh(mesh);
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(
@@ -43,17 +43,18 @@ TEST(CheckMesh, NamesInvertedElements) {
 }
 
 TEST(CheckMesh, DetectsAnElementThatIsInvertedAtOneNodeOnly) {
-  Mesh mesh = make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "hex20");
+  solids::Mesh mesh =
+      solids::make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "hex20");
   // A middle node beyond the quarter of its edge folds the edge over.
   const int middle = mesh.blocks[0].nodes[8], corner = mesh.blocks[0].nodes[0];
   mesh.nodes[middle] = 0.8 * mesh.nodes[corner] + 0.2 * mesh.nodes[mesh.blocks[0].nodes[1]];
-  EXPECT_THROW(check_mesh(mesh), InputError);
+  EXPECT_THROW(solids::check_mesh(mesh), InputError);
 }
 
 TEST(CheckMesh, ReportsSeparatePiecesAndCoincidentNodes) {
-  const Mesh mesh = both(block(1), block(2, 1.5));
+  const solids::Mesh mesh = both(block(1), block(2, 1.5));
   EXPECT_THAT(
-      check_mesh(mesh),
+      solids::check_mesh(mesh),
       testing::ElementsAre(
           testing::StartsWith("4 nodes lie on others, so that parts may not be connected: 9, 12, "
                               "15, 18; node 9 lies on node 2."),
@@ -62,34 +63,34 @@ TEST(CheckMesh, ReportsSeparatePiecesAndCoincidentNodes) {
 }
 
 TEST(CheckMesh, ReportsNodesOfNoElement) {
-  Mesh mesh = block(1);
+  solids::Mesh mesh = block(1);
   mesh.nodes.emplace_back(5, 5, 5);
-  EXPECT_THAT(check_mesh(mesh),
+  EXPECT_THAT(solids::check_mesh(mesh),
               testing::ElementsAre(
                   "1 node belongs to no element: 9. They are ignored; no action is needed."));
 }
 
 TEST(MergeDuplicateNodes, MakesOnePieceOfTwo) {
-  Mesh mesh = both(block(1), block(2, 1.5));
+  solids::Mesh mesh = both(block(1), block(2, 1.5));
   mesh.node_sets["joint"] = {1, 8};
-  EXPECT_EQ(merge_duplicate_nodes(mesh), 4);
+  EXPECT_EQ(solids::merge_duplicate_nodes(mesh), 4);
   EXPECT_EQ(mesh.nodes.size(), 16U);
-  EXPECT_THAT(check_mesh(mesh), testing::IsEmpty());
-  EXPECT_EQ(boundary(mesh).size(), 2 + 3 * 4);
+  EXPECT_THAT(solids::check_mesh(mesh), testing::IsEmpty());
+  EXPECT_EQ(solids::boundary(mesh).size(), 2 + 3 * 4);
   EXPECT_THAT(mesh.node_sets.at("joint"), testing::ElementsAre(1));
 }
 
 TEST(MergeDuplicateNodes, RefusesToCollapseAnElement) {
-  Mesh mesh = block(1);
-  EXPECT_THROW(merge_duplicate_nodes(mesh, 1.0), InputError);
+  solids::Mesh mesh = block(1);
+  EXPECT_THROW(solids::merge_duplicate_nodes(mesh, 1.0), InputError);
 }
 
 TEST(PartOf, KeepsTheElementsOfAGroupWithItsSets) {
-  Mesh mesh = block(3);
+  solids::Mesh mesh = block(3);
   mesh.element_sets["rubber"] = {2};
   mesh.node_sets["tip"] = mesh.surfaces.at("xmax").nodes();
   mesh.node_sets["foot"] = mesh.surfaces.at("xmin").nodes();
-  const Mesh part = part_of(mesh, "rubber");
+  const solids::Mesh part = solids::part_of(mesh, "rubber");
   EXPECT_EQ(part.nodes.size(), 8U);
   EXPECT_EQ(part.element_count(), 1);
   EXPECT_EQ(part.surfaces.count("xmax"), 1U);
@@ -97,10 +98,10 @@ TEST(PartOf, KeepsTheElementsOfAGroupWithItsSets) {
   EXPECT_EQ(part.node_sets.at("tip").size(), 4U);
   EXPECT_EQ(part.node_sets.count("foot"), 0U);
   EXPECT_EQ(part.node_label(0), 3);
-  EXPECT_LT((extent(part).least - Vec3(0.5, -0.5, -0.5)).norm(), 1e-15);
-  EXPECT_EQ(part_of(mesh, "").element_count(), 3);
+  EXPECT_LT((solids::extent(part).least - Vec3(0.5, -0.5, -0.5)).norm(), 1e-15);
+  EXPECT_EQ(solids::part_of(mesh, "").element_count(), 3);
   try {
-    (void)part_of(mesh, "ruber");
+    (void)solids::part_of(mesh, "ruber");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),

@@ -13,16 +13,17 @@
 namespace polhode::generators_tests {
 namespace {
 
-const MeshParameters kBlock{
+const solids::MeshParameters kBlock{
     {"size", {0.3, 0.2, 0.1}}, {"cells", {3, 2, 2}}, {"grading", {2, 1, 3}}};
-const MeshParameters kCylinder{{"diameter", {0.2}}, {"length", {0.5}}, {"cells", {2, 16, 3}}};
-const MeshParameters kTube{
+const solids::MeshParameters kCylinder{
+    {"diameter", {0.2}}, {"length", {0.5}}, {"cells", {2, 16, 3}}};
+const solids::MeshParameters kTube{
     {"outer", {0.2}}, {"inner", {0.15}}, {"length", {0.5}}, {"cells", {1, 16, 3}}};
-const MeshParameters kSphere{{"diameter", {2.0}}, {"cells", {3, 2}}, {"grading", {0.5, 2}}};
+const solids::MeshParameters kSphere{{"diameter", {2.0}}, {"cells", {3, 2}}, {"grading", {0.5, 2}}};
 
 struct Solid {
   const char* generator;
-  const MeshParameters* parameters;
+  const solids::MeshParameters* parameters;
   double volume;
   std::vector<std::string> sides;
 };
@@ -38,9 +39,9 @@ const std::vector<Solid>& solids() {
   return all;
 }
 
-double volume(const Mesh& mesh) {
+double volume(const solids::Mesh& mesh) {
   double sum = 0.0;
-  for (int e = 0; e < mesh.element_count(); ++e) sum += element_volume(mesh, e);
+  for (int e = 0; e < mesh.element_count(); ++e) sum += solids::element_volume(mesh, e);
   return sum;
 }
 
@@ -49,12 +50,12 @@ struct Flux {
   Vec3 area = Vec3::Zero();
   double volume = 0.0;
 };
-Flux flux(const Mesh& mesh, const Surface& surface) {
+Flux flux(const solids::Mesh& mesh, const solids::Surface& surface) {
   Flux sum;
   const double p = std::sqrt(0.6);
   const double xs[] = {-p, 0.0, p}, ws[] = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
-  for (const FaceBlock& block : surface.blocks) {
-    const CellShape& shape = block.shape();
+  for (const solids::FaceBlock& block : surface.blocks) {
+    const solids::CellShape& shape = block.shape();
     const bool triangle = shape.corners == 3;
     for (int f = 0; f < block.size(); ++f)
       for (int i = 0; i < 3; ++i)
@@ -66,8 +67,8 @@ Flux flux(const Mesh& mesh, const Surface& surface) {
             xi = {u, v * (1.0 - u), 0.0};
             weight *= 0.25 * (1.0 - u);
           }
-          const Vec N = shape_functions(shape, xi);
-          const Mat D = shape_gradients(shape, xi);
+          const Vec N = solids::shape_functions(shape, xi);
+          const Mat D = solids::shape_gradients(shape, xi);
           Vec3 X = Vec3::Zero(), a = Vec3::Zero(), b = Vec3::Zero();
           for (int n = 0; n < shape.size(); ++n) {
             const Vec3& Xn = mesh.nodes[block.nodes[shape.size() * f + n]];
@@ -91,21 +92,21 @@ TEST_P(EveryGenerator, FillsItsShapeWithoutGaps) {
   const auto& [index, type] = GetParam();
   const Solid& solid = solids()[index];
   if (std::string(solid.generator) == "sphere" && type == "wedge6") {
-    EXPECT_THROW((void)make_mesh("mesh", "sphere", kSphere, type), InputError);
+    EXPECT_THROW((void)solids::make_mesh("mesh", "sphere", kSphere, type), InputError);
     return;
   }
-  const Mesh mesh = make_mesh("mesh", solid.generator, *solid.parameters, type);
+  const solids::Mesh mesh = solids::make_mesh("mesh", solid.generator, *solid.parameters, type);
   EXPECT_EQ(mesh.blocks[0].type, type);
-  EXPECT_THAT(mesh_faults(mesh), testing::IsEmpty());
+  EXPECT_THAT(solids::mesh_faults(mesh), testing::IsEmpty());
   const double filled = volume(mesh);
-  const Surface all = boundary(mesh);
+  const solids::Surface all = solids::boundary(mesh);
   const Flux outside = flux(mesh, all);
-  const double size = extent(mesh).size();
+  const double size = solids::extent(mesh).size();
   EXPECT_LT(outside.area.norm(), 1e-12 * size * size);
   EXPECT_NEAR(outside.volume, filled, 1e-12 * filled);
   // Area lost by straight sides of a circle: sin(h)/h of 16 sides is 1 − 2.6e-2; of a sphere twice
   // as much. Quadratic sides leave the square of that.
-  const bool quadratic = cell_shape(type).order == 2;
+  const bool quadratic = solids::cell_shape(type).order == 2;
   const double tolerance = index == 0 ? 1e-12 : quadratic ? 2e-3 : 0.1;
   EXPECT_NEAR(filled, solid.volume, tolerance * solid.volume);
 
@@ -128,8 +129,8 @@ INSTANTIATE_TEST_SUITE_P(Meshes, EveryGenerator,
                          });
 
 TEST(BlockMesh, GrowsItsCellsByTheGrading) {
-  const Mesh mesh =
-      make_mesh("m", "block", {{"size", {7, 1, 1}}, {"cells", {3, 1, 1}}, {"grading", {4, 1, 1}}});
+  const solids::Mesh mesh = solids::make_mesh(
+      "m", "block", {{"size", {7, 1, 1}}, {"cells", {3, 1, 1}}, {"grading", {4, 1, 1}}});
   // Lengths 1, 2, 4, centred.
   std::set<double> xs;
   for (const Vec3& X : mesh.nodes) xs.insert(std::round(1e9 * X[0]) / 1e9);
@@ -138,41 +139,42 @@ TEST(BlockMesh, GrowsItsCellsByTheGrading) {
 
 TEST(CylinderMesh, HasNodesOfQuadraticElementsOnItsRim) {
   for (const char* type : {"hex20", "hex27", "tet10"}) {
-    const Mesh mesh = make_mesh("m", "cylinder", kCylinder, type);
+    const solids::Mesh mesh = solids::make_mesh("m", "cylinder", kCylinder, type);
     for (int node : mesh.surfaces.at("outer").nodes())
       EXPECT_NEAR(std::hypot(mesh.nodes[node][0], mesh.nodes[node][1]), 0.1, 1e-15) << type;
   }
 }
 
 TEST(SphereMesh, IsCutAlongCoordinatePlanesWhenOctantsAreLeftOut) {
-  MeshParameters octant = kSphere;
+  solids::MeshParameters octant = kSphere;
   for (const auto& [octants, cuts] : std::map<double, std::size_t>{{1, 3}, {2, 2}, {4, 1}}) {
     octant["octants"] = {octants};
-    const Mesh mesh = make_mesh("m", "sphere", octant, "hex27");
+    const solids::Mesh mesh = solids::make_mesh("m", "sphere", octant, "hex27");
     EXPECT_NEAR(volume(mesh), octants / 6.0 * std::numbers::pi, 1e-3 * octants);
     EXPECT_EQ(mesh.surfaces.size(), cuts + 1);
-    EXPECT_LT(flux(mesh, boundary(mesh)).area.norm(), 1e-12);
-    EXPECT_GE(extent(mesh).least[2], 0.0);
+    EXPECT_LT(flux(mesh, solids::boundary(mesh)).area.norm(), 1e-12);
+    EXPECT_GE(solids::extent(mesh).least[2], 0.0);
   }
 }
 
 TEST(LineMesh, RunsThroughItsPoints) {
-  const Mesh mesh =
-      make_mesh("m", "line", {{"points", {0, 0, 0, 1, 0, 0, 1, 2, 0}}, {"cells", {2}}});
+  const solids::Mesh mesh =
+      solids::make_mesh("m", "line", {{"points", {0, 0, 0, 1, 0, 0, 1, 2, 0}}, {"cells", {2}}});
   ASSERT_EQ(mesh.nodes.size(), 5U);
   EXPECT_EQ(mesh.nodes[2], Vec3(1, 0, 0));
   EXPECT_EQ(mesh.nodes[4], Vec3(1, 2, 0));
   EXPECT_THAT(mesh.blocks[0].nodes, testing::ElementsAre(0, 1, 1, 2, 2, 3, 3, 4));
   EXPECT_THAT(mesh.node_sets.at("end"), testing::ElementsAre(4));
-  const Mesh curved =
-      make_mesh("m", "line", {{"points", {0, 0, 0, 1, 0, 0}}, {"cells", {2}}}, "line3");
+  const solids::Mesh curved =
+      solids::make_mesh("m", "line", {{"points", {0, 0, 0, 1, 0, 0}}, {"cells", {2}}}, "line3");
   EXPECT_THAT(curved.blocks[0].nodes, testing::ElementsAre(0, 2, 1, 2, 4, 3));
 }
 
 TEST(MakeMesh, ReportsInvalidParameters) {
-  const auto message = [](const char* generator, MeshParameters parameters, const char* type) {
+  const auto message = [](const char* generator, solids::MeshParameters parameters,
+                          const char* type) {
     try {
-      (void)make_mesh("solids.pad.mesh", generator, parameters, type);
+      (void)solids::make_mesh("solids.pad.mesh", generator, parameters, type);
       return std::string("no error");
     } catch (const InputError& e) {
       return std::string(e.what());
@@ -201,13 +203,13 @@ TEST(MakeMesh, ReportsInvalidParameters) {
 
 TEST(InlineMesh, TakesTheTypeFromTheCountOfNodes) {
   const std::vector<Vec3> nodes{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const Mesh mesh = inline_mesh("m", nodes, {{0, 1, 2, 3}}, {{"foot", {2, 0, 2}}});
+  const solids::Mesh mesh = solids::inline_mesh("m", nodes, {{0, 1, 2, 3}}, {{"foot", {2, 0, 2}}});
   EXPECT_EQ(mesh.blocks[0].type, "tet4");
   EXPECT_THAT(mesh.node_sets.at("foot"), testing::ElementsAre(0, 2));
-  EXPECT_THROW((void)inline_mesh("m", nodes, {{0, 1, 2, 4}}, {}), InputError);
-  EXPECT_THROW((void)inline_mesh("m", nodes, {{0, 1, 2, 2}}, {}), InputError);
-  EXPECT_THROW((void)inline_mesh("m", nodes, {{0, 1, 2, 3, 3}}, {}), InputError);
-  EXPECT_THROW((void)inline_mesh("m", nodes, {{0, 1, 2, 3}}, {{"x", {-1}}}), InputError);
+  EXPECT_THROW((void)solids::inline_mesh("m", nodes, {{0, 1, 2, 4}}, {}), InputError);
+  EXPECT_THROW((void)solids::inline_mesh("m", nodes, {{0, 1, 2, 2}}, {}), InputError);
+  EXPECT_THROW((void)solids::inline_mesh("m", nodes, {{0, 1, 2, 3, 3}}, {}), InputError);
+  EXPECT_THROW((void)solids::inline_mesh("m", nodes, {{0, 1, 2, 3}}, {{"x", {-1}}}), InputError);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ std::string two_bricks(const std::string& rest) {
 
 std::string message(const std::string& text) {
   try {
-    (void)parse_mesh("part.inp", text);
+    (void)solids::parse_mesh("part.inp", text);
     return "no error";
   } catch (const InputError& e) {
     return e.what();
@@ -36,12 +36,12 @@ std::string message(const std::string& text) {
 }
 
 TEST(ReadAbaqus, GathersSets) {
-  const Mesh mesh =
-      parse_mesh("part.inp", two_bricks("*NSET, NSET=foot, GENERATE\n100, 103, 1\n"
-                                        "*NSET, NSET=ends\nFOOT, 301,\n303\n"
-                                        "*ELSET, ELSET=both\nUpper, lower HALF\n"
-                                        "*ELSET, ELSET=step, GENERATE\n10, 20, 10\n"
-                                        "*MATERIAL, NAME=rubber\n*DENSITY\n1100.,\n"));
+  const solids::Mesh mesh =
+      solids::parse_mesh("part.inp", two_bricks("*NSET, NSET=foot, GENERATE\n100, 103, 1\n"
+                                                "*NSET, NSET=ends\nFOOT, 301,\n303\n"
+                                                "*ELSET, ELSET=both\nUpper, lower HALF\n"
+                                                "*ELSET, ELSET=step, GENERATE\n10, 20, 10\n"
+                                                "*MATERIAL, NAME=rubber\n*DENSITY\n1100.,\n"));
   EXPECT_EQ(mesh.node_sets.at("All").size(), 12U);
   EXPECT_THAT(mesh.node_sets.at("foot"), ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(mesh.node_sets.at("ends"), ElementsAre(0, 1, 2, 3, 9, 11));
@@ -52,18 +52,18 @@ TEST(ReadAbaqus, GathersSets) {
   EXPECT_EQ(mesh.element_label(1), 20);
   EXPECT_THAT(mesh.notes,
               ElementsAre("ignored, as it does not define the mesh: *DENSITY, *MATERIAL"));
-  EXPECT_THAT(mesh_faults(mesh), testing::IsEmpty());
+  EXPECT_THAT(solids::mesh_faults(mesh), testing::IsEmpty());
 }
 
 // Each face by its Abaqus name and its position on a unit cube, a tetrahedron, a wedge.
 TEST(ReadAbaqus, NumbersTheFacesOfSolids) {
-  const auto middle = [](const Mesh& mesh, const char* name) {
-    const Surface& surface = mesh.surfaces.at(name);
+  const auto middle = [](const solids::Mesh& mesh, const char* name) {
+    const solids::Surface& surface = mesh.surfaces.at(name);
     Vec3 sum = Vec3::Zero();
     for (int node : surface.nodes()) sum += mesh.nodes[node];
     return Vec3(sum / static_cast<double>(surface.nodes().size()));
   };
-  const Mesh brick = parse_mesh(
+  const solids::Mesh brick = solids::parse_mesh(
       "part.inp", two_bricks("*SURFACE, NAME=S1\n10, S1\n*SURFACE, NAME=S2\nLower half, S2\n"
                              "*SURFACE, NAME=S3, TYPE=ELEMENT\n10, S3\n*SURFACE, NAME=S4\n10, S4\n"
                              "*SURFACE, NAME=S5\n10, s5\n*SURFACE, NAME=S6\n10, S6\n"
@@ -78,7 +78,7 @@ TEST(ReadAbaqus, NumbersTheFacesOfSolids) {
   EXPECT_EQ(brick.surfaces.at("free").size(), 5);
   EXPECT_THAT(brick.node_sets.at("points"), ElementsAre(0, 1));
 
-  const Mesh tet = parse_mesh(
+  const solids::Mesh tet = solids::parse_mesh(
       "part.inp",
       "*NODE\n1, 0, 0, 0\n2, 3\n3, 0, 3\n4, 0, 0, 3\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"
       "*SURFACE, NAME=S1\n1, S1\n*SURFACE, NAME=S2\n1, S2\n*SURFACE, NAME=S3\n1, S3\n"
@@ -88,12 +88,12 @@ TEST(ReadAbaqus, NumbersTheFacesOfSolids) {
   EXPECT_EQ(middle(tet, "S3"), Vec3(1, 1, 1));
   EXPECT_EQ(middle(tet, "S4"), Vec3(0, 1, 1));
 
-  const Mesh wedge =
-      parse_mesh("part.inp",
-                 "*NODE\n1, 0, 0, 0\n2, 3\n3, 0, 3\n4, 0, 0, 2\n5, 3, 0, 2\n6, 0, 3, 2\n"
-                 "*ELEMENT, TYPE=C3D6\n1, 1, 2, 3, 4, 5, 6\n"
-                 "*SURFACE, NAME=S1\n1, S1\n*SURFACE, NAME=S2\n1, S2\n*SURFACE, NAME=S3\n1, S3\n"
-                 "*SURFACE, NAME=S4\n1, S4\n*SURFACE, NAME=S5\n1, S5\n");
+  const solids::Mesh wedge = solids::parse_mesh(
+      "part.inp",
+      "*NODE\n1, 0, 0, 0\n2, 3\n3, 0, 3\n4, 0, 0, 2\n5, 3, 0, 2\n6, 0, 3, 2\n"
+      "*ELEMENT, TYPE=C3D6\n1, 1, 2, 3, 4, 5, 6\n"
+      "*SURFACE, NAME=S1\n1, S1\n*SURFACE, NAME=S2\n1, S2\n*SURFACE, NAME=S3\n1, S3\n"
+      "*SURFACE, NAME=S4\n1, S4\n*SURFACE, NAME=S5\n1, S5\n");
   EXPECT_EQ(middle(wedge, "S1"), Vec3(1, 1, 0));
   EXPECT_EQ(middle(wedge, "S2"), Vec3(1, 1, 2));
   EXPECT_EQ(middle(wedge, "S3"), Vec3(1.5, 0, 1));
@@ -104,9 +104,10 @@ TEST(ReadAbaqus, NumbersTheFacesOfSolids) {
 TEST(ReadAbaqus, ReadsOnePartInPlace) {
   const std::string body =
       two_bricks("*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=P-1, PART=P\n");
-  const Mesh mesh = parse_mesh("part.inp", "*PART, NAME=P\n" + body +
-                                               "*END INSTANCE\n*NSET, NSET=tip, INSTANCE=P-1\n300\n"
-                                               "*END ASSEMBLY\n");
+  const solids::Mesh mesh =
+      solids::parse_mesh("part.inp", "*PART, NAME=P\n" + body +
+                                         "*END INSTANCE\n*NSET, NSET=tip, INSTANCE=P-1\n300\n"
+                                         "*END ASSEMBLY\n");
   EXPECT_THAT(mesh.node_sets.at("tip"), ElementsAre(8));
   EXPECT_EQ(
       message("*PART, NAME=P\n" + body + "1, 0, 0\n*END INSTANCE\n"),
@@ -162,7 +163,7 @@ TEST(ReadAbaqus, LocatesErrors) {
 TEST(ReadAbaqus, MergesNestedSetsWithoutDuplicates) {
   std::string text = two_bricks("*NSET, NSET=a\n100, 101\n*NSET, NSET=a\n");
   for (int i = 0; i < 100; ++i) text += "a, a, a, a, a, a, a, a\n";
-  EXPECT_THAT(parse_mesh("part.inp", text).node_sets.at("a"), ElementsAre(0, 1));
+  EXPECT_THAT(solids::parse_mesh("part.inp", text).node_sets.at("a"), ElementsAre(0, 1));
 }
 
 }  // namespace

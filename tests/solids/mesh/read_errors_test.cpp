@@ -13,7 +13,7 @@ using testing::StartsWith;
 
 std::string message(const std::string& name, const std::string& text) {
   try {
-    (void)parse_mesh(name, text);
+    (void)solids::parse_mesh(name, text);
     return "no error";
   } catch (const InputError& e) {
     return e.what();

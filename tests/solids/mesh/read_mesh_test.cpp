@@ -35,7 +35,7 @@ std::string bytes_of(const std::string& file) {
 }
 
 /// Area vector of a plane face by its corners.
-Vec3 area(const Mesh& mesh, const FaceBlock& block, int face) {
+Vec3 area(const solids::Mesh& mesh, const solids::FaceBlock& block, int face) {
   const int n = block.shape().size(), corners = block.shape().corners;
   const int* node = &block.nodes[static_cast<std::size_t>(n * face)];
   Vec3 sum = Vec3::Zero();
@@ -44,9 +44,9 @@ Vec3 area(const Mesh& mesh, const FaceBlock& block, int face) {
                      .cross(mesh.nodes[node[i + 1]] - mesh.nodes[node[0]]);
   return sum;
 }
-Vec3 area(const Mesh& mesh, const Surface& surface) {
+Vec3 area(const solids::Mesh& mesh, const solids::Surface& surface) {
   Vec3 sum = Vec3::Zero();
-  for (const FaceBlock& block : surface.blocks)
+  for (const solids::FaceBlock& block : surface.blocks)
     for (int f = 0; f < block.size(); ++f) sum += area(mesh, block, f);
   return sum;
 }
@@ -55,7 +55,7 @@ Vec3 area(const Mesh& mesh, const Surface& surface) {
 // text is rounded to 5e-12.
 class MeshFile : public testing::TestWithParam<std::string> {
  protected:
-  Mesh mesh_ = read_mesh(folder() + "/" + GetParam());
+  solids::Mesh mesh_ = solids::read_mesh(folder() + "/" + GetParam());
   std::string type_ = GetParam().substr(0, GetParam().find_first_of("_."));
   static constexpr double kRounding = 1e-11;
 };
@@ -63,19 +63,19 @@ class MeshFile : public testing::TestWithParam<std::string> {
 TEST_P(MeshFile, HasElementsOfItsType) {
   ASSERT_EQ(mesh_.blocks.size(), 1U);
   EXPECT_EQ(mesh_.blocks[0].type, type_);
-  EXPECT_THAT(mesh_faults(mesh_), IsEmpty());
+  EXPECT_THAT(solids::mesh_faults(mesh_), IsEmpty());
 }
 
 // A misplaced node would not be in the middle of its edge, face or cell.
 TEST_P(MeshFile, HasItsNodesAtTheirPositions) {
-  const CellShape& shape = mesh_.blocks[0].shape();
-  const CellShape& linear = cell_shape(shape.corners == 8   ? "hex8"
-                                       : shape.corners == 4 ? "tet4"
-                                                            : "wedge6");
+  const solids::CellShape& shape = mesh_.blocks[0].shape();
+  const solids::CellShape& linear = solids::cell_shape(shape.corners == 8   ? "hex8"
+                                                       : shape.corners == 4 ? "tet4"
+                                                                            : "wedge6");
   for (int e = 0; e < mesh_.element_count(); ++e) {
     const std::span<const int> nodes = mesh_.element_nodes(e);
     for (int a = shape.corners; a < shape.size(); ++a) {
-      const Vec N = shape_functions(linear, shape.nodes[a]);
+      const Vec N = solids::shape_functions(linear, shape.nodes[a]);
       Vec3 X = Vec3::Zero();
       for (int i = 0; i < shape.corners; ++i) X += N[i] * mesh_.nodes[nodes[i]];
       EXPECT_LT((X - mesh_.nodes[nodes[a]]).norm(), kRounding) << "element " << e << " node " << a;
@@ -86,13 +86,13 @@ TEST_P(MeshFile, HasItsNodesAtTheirPositions) {
 TEST_P(MeshFile, FillsItsVolume) {
   double volume = 0.0;
   for (int e = 0; e < mesh_.element_count(); ++e) {
-    const double one = element_volume(mesh_, e);
+    const double one = solids::element_volume(mesh_, e);
     EXPECT_GT(one, 0.0);
     volume += one;
   }
   EXPECT_NEAR(volume, 2.0, 10.0 * kRounding);
-  EXPECT_LT(area(mesh_, boundary(mesh_)).norm(), 10.0 * kRounding);
-  EXPECT_LT((extent(mesh_).most - Vec3(2, 1, 1)).norm(), kRounding);
+  EXPECT_LT(area(mesh_, solids::boundary(mesh_)).norm(), 10.0 * kRounding);
+  EXPECT_LT((solids::extent(mesh_).most - Vec3(2, 1, 1)).norm(), kRounding);
 }
 
 TEST_P(MeshFile, HasItsGroups) {
@@ -103,8 +103,8 @@ TEST_P(MeshFile, HasItsGroups) {
   const std::string upper = gmsh ? "upper" : vtu ? "material_2" : "Volume2";
   ASSERT_EQ(mesh_.element_sets.count(lower), 1U);
   EXPECT_EQ(mesh_.element_sets.at(upper).size(), static_cast<std::size_t>(half));
-  const Mesh part = part_of(mesh_, lower);
-  EXPECT_LT((extent(part).most - Vec3(2, 1, 0.5)).norm(), kRounding);
+  const solids::Mesh part = solids::part_of(mesh_, lower);
+  EXPECT_LT((solids::extent(part).most - Vec3(2, 1, 0.5)).norm(), kRounding);
   if (gmsh) {
     EXPECT_EQ(mesh_.element_sets.at("volume_9").size(), 2 * static_cast<std::size_t>(half));
     EXPECT_EQ(mesh_.node_sets.at("corner").size(), 1U);
@@ -119,9 +119,9 @@ TEST_P(MeshFile, HasItsGroups) {
   const std::string foot = gmsh ? "foot" : "Surface5", top = gmsh ? "top" : "Surface49";
   EXPECT_LT((area(mesh_, mesh_.surfaces.at(foot)) - Vec3(0, 0, -2)).norm(), 10.0 * kRounding);
   EXPECT_LT((area(mesh_, mesh_.surfaces.at(top)) - Vec3(0, 0, 2)).norm(), 10.0 * kRounding);
-  const Surface& between = mesh_.surfaces.at(gmsh ? "between" : "Surface27");
+  const solids::Surface& between = mesh_.surfaces.at(gmsh ? "between" : "Surface27");
   EXPECT_NEAR(std::abs(area(mesh_, between)[2]), 2.0, 10.0 * kRounding);
-  for (const FaceBlock& block : mesh_.surfaces.at(top).blocks)
+  for (const solids::FaceBlock& block : mesh_.surfaces.at(top).blocks)
     for (int owner : block.owners) {
       const auto& set = mesh_.element_sets.at(upper);
       EXPECT_TRUE(std::binary_search(set.begin(), set.end(), owner));
@@ -134,7 +134,7 @@ TEST_P(MeshFile, CutShortIsRefused) {
   int whole = 0, refused = 0;
   for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 300) {
     try {
-      (void)parse_mesh(GetParam(), std::string_view(bytes).substr(0, length));
+      (void)solids::parse_mesh(GetParam(), std::string_view(bytes).substr(0, length));
       ++whole;
     } catch (const InputError& e) {
       EXPECT_THAT(e.where(), testing::StartsWith(GetParam()));
@@ -161,7 +161,7 @@ TEST_P(MeshFile, DamagedIsReadOrRefused) {
       damaged[at] = trial % 2 ? static_cast<char>(random >> 3) : "0 9-\n<,$"[random >> 29];
     }
     try {
-      const Mesh mesh = parse_mesh(GetParam(), damaged);
+      const solids::Mesh mesh = solids::parse_mesh(GetParam(), damaged);
       EXPECT_GT(mesh.element_count(), 0);
     } catch (const InputError& e) {
       EXPECT_FALSE(e.what_is_wrong().empty());
@@ -186,7 +186,7 @@ TEST(ReadMesh, ReadsOrRefusesFilesFoundByFuzzers) {
                             std::istreambuf_iterator<char>()};
     for (const char* name : {"a.msh", "a.vtu", "a.inp"}) {
       try {
-        (void)mesh_faults(parse_mesh(name, bytes));
+        (void)solids::mesh_faults(solids::parse_mesh(name, bytes));
       } catch (const InputError& e) {
         EXPECT_FALSE(e.what_is_wrong().empty());
       }
@@ -197,15 +197,15 @@ TEST(ReadMesh, ReadsOrRefusesFilesFoundByFuzzers) {
 }
 
 TEST(ReadMesh, ScalesToMetres) {
-  const Mesh mesh = read_mesh(folder() + "/hex8_4_text.msh", 0.001);
-  EXPECT_LT((extent(mesh).most - Vec3(2e-3, 1e-3, 1e-3)).norm(), 1e-14);
-  EXPECT_THROW((void)read_mesh(folder() + "/hex8_4_text.msh", 0.0), InputError);
+  const solids::Mesh mesh = solids::read_mesh(folder() + "/hex8_4_text.msh", 0.001);
+  EXPECT_LT((solids::extent(mesh).most - Vec3(2e-3, 1e-3, 1e-3)).norm(), 1e-14);
+  EXPECT_THROW((void)solids::read_mesh(folder() + "/hex8_4_text.msh", 0.0), InputError);
 }
 
 TEST(ReadMesh, ListsTheFileTypesItReads) {
   const auto message = [](const std::string& path) {
     try {
-      (void)read_mesh(path);
+      (void)solids::read_mesh(path);
       return std::string("no error");
     } catch (const InputError& e) {
       return std::string(e.what());

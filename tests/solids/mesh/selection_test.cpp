@@ -9,52 +9,52 @@
 namespace polhode::selection_tests {
 namespace {
 
-using Kind = Selection::Kind;
-using Level = Selection::Level;
+using Kind = solids::Selection::Kind;
+using Level = solids::Selection::Level;
 
 /// 2 × 2 × 2 cells between −1 and 1.
-Mesh cube(const char* type = "hex8") {
-  return make_mesh("cube.mesh", "block", {{"size", {2, 2, 2}}, {"cells", {2, 2, 2}}}, type);
+solids::Mesh cube(const char* type = "hex8") {
+  return solids::make_mesh("cube.mesh", "block", {{"size", {2, 2, 2}}, {"cells", {2, 2, 2}}}, type);
 }
 
-Selection plane(const Vec3& normal, Level level, double value = 0.0) {
-  Selection s;
+solids::Selection plane(const Vec3& normal, Level level, double value = 0.0) {
+  solids::Selection s;
   s.kind = Kind::kPlane;
   s.normal = normal;
   s.level = level;
   s.value = value;
   return s;
 }
-Selection named(const char* name) {
-  Selection s;
+solids::Selection named(const char* name) {
+  solids::Selection s;
   s.kind = Kind::kSet;
   s.set = name;
   return s;
 }
-Selection box(const Vec3& least, const Vec3& most) {
-  Selection s;
+solids::Selection box(const Vec3& least, const Vec3& most) {
+  solids::Selection s;
   s.kind = Kind::kBox;
   s.least = least;
   s.most = most;
   return s;
 }
-Selection ball(double radius, bool on_surface) {
-  Selection s;
+solids::Selection ball(double radius, bool on_surface) {
+  solids::Selection s;
   s.kind = Kind::kSphere;
   s.radius = radius;
   s.on_surface = on_surface;
   return s;
 }
 
-std::size_t nodes(const Mesh& mesh, const std::vector<Selection>& s) {
-  return select_nodes("bonded.base", mesh, s).size();
+std::size_t nodes(const solids::Mesh& mesh, const std::vector<solids::Selection>& s) {
+  return solids::select_nodes("bonded.base", mesh, s).size();
 }
-int faces(const Mesh& mesh, const std::vector<Selection>& s) {
-  return select_faces("loads.push", mesh, s).size();
+int faces(const solids::Mesh& mesh, const std::vector<solids::Selection>& s) {
+  return solids::select_faces("loads.push", mesh, s).size();
 }
 
 TEST(Selection, TakesNodes) {
-  const Mesh mesh = cube();
+  const solids::Mesh mesh = cube();
   EXPECT_EQ(nodes(mesh, {}), 27U);
   EXPECT_EQ(nodes(mesh, {plane(Vec3::UnitX(), Level::kMin)}), 9U);
   EXPECT_EQ(nodes(mesh, {plane(Vec3::Ones().normalized(), Level::kMax)}), 1U);
@@ -63,7 +63,7 @@ TEST(Selection, TakesNodes) {
   EXPECT_EQ(nodes(mesh, {ball(1.0, false)}), 7U);
   EXPECT_EQ(nodes(mesh, {ball(1.0, true)}), 6U);
   EXPECT_EQ(nodes(mesh, {named("xmin"), named("ymin")}), 15U);
-  Selection list;
+  solids::Selection list;
   list.kind = Kind::kNodes;
   list.nodes = {4, 2, 4};
   EXPECT_EQ(nodes(mesh, {list}), 2U);
@@ -71,14 +71,14 @@ TEST(Selection, TakesNodes) {
 
 TEST(Selection, TakesFacesOfTheBoundaryThatFaceOutward) {
   for (const char* type : {"hex8", "hex20", "hex27"}) {
-    const Mesh mesh = cube(type);
+    const solids::Mesh mesh = cube(type);
     EXPECT_EQ(faces(mesh, {}), 24);
     EXPECT_EQ(faces(mesh, {named("xmax")}), 4);
     EXPECT_EQ(faces(mesh, {named("xmax"), plane(Vec3::UnitX(), Level::kMax)}), 4);
     EXPECT_EQ(faces(mesh, {named("xmax"), named("ymax")}), 8);
     EXPECT_EQ(faces(mesh, {box({0, -1, 1}, {1, 1, 1})}), 2);
-    const Surface top = select_faces("", mesh, {plane(Vec3::UnitZ(), Level::kMax)});
-    const FaceBlock& block = top.blocks[0];
+    const solids::Surface top = solids::select_faces("", mesh, {plane(Vec3::UnitZ(), Level::kMax)});
+    const solids::FaceBlock& block = top.blocks[0];
     for (int f = 0; f < block.size(); ++f) {
       const int* face = &block.nodes[block.shape().nodes.size() * static_cast<std::size_t>(f)];
       const Vec3 a = mesh.nodes[face[0]], b = mesh.nodes[face[1]], c = mesh.nodes[face[2]];
@@ -89,13 +89,13 @@ TEST(Selection, TakesFacesOfTheBoundaryThatFaceOutward) {
 }
 
 TEST(Selection, ReportsTheExtentOfTheMeshIfItIsEmpty) {
-  const Mesh mesh = cube();
-  const auto message = [&](const Selection& s, bool of_faces) {
+  const solids::Mesh mesh = cube();
+  const auto message = [&](const solids::Selection& s, bool of_faces) {
     try {
       if (of_faces)
-        (void)select_faces("solids.pad.bonded.base", mesh, {s});
+        (void)solids::select_faces("solids.pad.bonded.base", mesh, {s});
       else
-        (void)select_nodes("solids.pad.bonded.base", mesh, {s});
+        (void)solids::select_nodes("solids.pad.bonded.base", mesh, {s});
       return std::string("no error");
     } catch (const InputError& e) {
       return std::string(e.what());

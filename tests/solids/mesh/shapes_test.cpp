@@ -11,18 +11,18 @@ namespace {
 const Vec3 kInside{0.21, 0.34, 0.17};
 
 TEST(CellShapes, HaveShapeFunctionsThatAreOneAtTheirNodeAndZeroAtTheOthers) {
-  for (const CellShape& shape : cell_shapes())
+  for (const solids::CellShape& shape : solids::cell_shapes())
     for (int b = 0; b < shape.size(); ++b) {
-      const Vec N = shape_functions(shape, shape.nodes[b]);
+      const Vec N = solids::shape_functions(shape, shape.nodes[b]);
       for (int a = 0; a < shape.size(); ++a)
         EXPECT_EQ(N[a], a == b ? 1.0 : 0.0) << shape.name << " " << a << " " << b;
     }
 }
 
 TEST(CellShapes, ReproducePositionsAndTheirGradients) {
-  for (const CellShape& shape : cell_shapes()) {
-    const Vec N = shape_functions(shape, kInside);
-    const Mat gradients = shape_gradients(shape, kInside);
+  for (const solids::CellShape& shape : solids::cell_shapes()) {
+    const Vec N = solids::shape_functions(shape, kInside);
+    const Mat gradients = solids::shape_gradients(shape, kInside);
     Vec3 x = Vec3::Zero();
     Mat3 F = Mat3::Zero();
     for (int a = 0; a < shape.size(); ++a) {
@@ -39,8 +39,8 @@ TEST(CellShapes, ReproducePositionsAndTheirGradients) {
 }
 
 TEST(CellShapes, HaveEdgeNodesInTheMiddlesOfTheirEdges) {
-  for (const CellShape& shape : cell_shapes())
-    for (const CellEdge& edge : shape.edges) {
+  for (const solids::CellShape& shape : solids::cell_shapes())
+    for (const solids::CellEdge& edge : shape.edges) {
       EXPECT_EQ(edge.middle >= 0, shape.order == 2) << shape.name;
       if (edge.middle < 0) continue;
       const Vec3 middle = 0.5 * (shape.nodes[edge.begin] + shape.nodes[edge.end]);
@@ -49,16 +49,16 @@ TEST(CellShapes, HaveEdgeNodesInTheMiddlesOfTheirEdges) {
 }
 
 TEST(CellShapes, HaveFacesThatFaceOutward) {
-  for (const CellShape& shape : cell_shapes()) {
+  for (const solids::CellShape& shape : solids::cell_shapes()) {
     Vec3 centre = Vec3::Zero();
     for (int i = 0; i < shape.corners; ++i) centre += shape.nodes[i] / shape.corners;
-    for (const CellFace& face : shape.faces) {
-      const CellShape& flat = cell_shape(face.type);
+    for (const solids::CellFace& face : shape.faces) {
+      const solids::CellShape& flat = solids::cell_shape(face.type);
       ASSERT_EQ(flat.size(), static_cast<int>(face.nodes.size()));
       const Vec3 a = shape.nodes[face.nodes[0]], b = shape.nodes[face.nodes[1]],
                  c = shape.nodes[face.nodes[2]];
       EXPECT_GT((b - a).cross(c - a).dot(a - centre), 0.0) << shape.name;
-      for (const CellEdge& edge : flat.edges) {
+      for (const solids::CellEdge& edge : flat.edges) {
         if (edge.middle < 0) continue;
         const Vec3 middle =
             0.5 * (shape.nodes[face.nodes[edge.begin]] + shape.nodes[face.nodes[edge.end]]);
@@ -69,15 +69,15 @@ TEST(CellShapes, HaveFacesThatFaceOutward) {
 }
 
 TEST(CellShapes, HaveAPositiveDeterminantEverywhere) {
-  for (const CellShape& shape : cell_shapes()) {
+  for (const solids::CellShape& shape : solids::cell_shapes()) {
     if (shape.dimension != 3) continue;
-    EXPECT_NEAR(least_jacobian(shape, shape.nodes.data()), 1.0, 1e-13) << shape.name;
+    EXPECT_NEAR(solids::least_jacobian(shape, shape.nodes.data()), 1.0, 1e-13) << shape.name;
   }
 }
 
 TEST(CellShapes, ListTheTypesWhenAskedForAnotherOne) {
   try {
-    (void)cell_shape("hex9");
+    (void)solids::cell_shape("hex9");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(

@@ -24,7 +24,7 @@ struct ApexAndBase {
   double height;    ///< Of the disc, along the axis from the centre [m].
   double softness;  ///< Where apex and base are equally far [m].
 
-  ApexAndBase(const Shape& s, double blur, double end) : R(s.half[0]), H(s.half[2]) {
+  ApexAndBase(const geometry::Shape& s, double blur, double end) : R(s.half[0]), H(s.half[2]) {
     bulge = end * std::min(R, H);
     radius = R * (1.0 - bulge / (2.0 * H));
     height = bulge - H;
@@ -39,15 +39,17 @@ struct ApexAndBase {
 /// Functions of RoundSolid.
 template <bool flat>
 struct Cone {
-  static Shape shape(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
-                     double rounding) {
+  static geometry::Shape shape(std::string_view where, std::span<const double> sizes,
+                               const geometry::ShapePlace& place, double rounding) {
     // The centroid is a quarter of the length above the base.
-    const ShapePlace middle{place.origin + 0.25 * sizes[1] * place.axes.col(2), place.axes};
+    const geometry::ShapePlace middle{place.origin + 0.25 * sizes[1] * place.axes.col(2),
+                                      place.axes};
     return cone(where, sizes[0], sizes[1], middle, rounding);
   }
 
   template <class T>
-  static Gap<T> over(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  static Gap<T> over(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                     const Placement<T>& at_b) {
     const Meridian<T> m(x, b, at_b);
     const double R = b.half[0], H = b.half[2], h = value(m.h), q = value(m.q);
     const double slant = std::hypot(R, 2.0 * H), n_q = 2.0 * H / slant, n_h = R / slant;
@@ -72,7 +74,7 @@ struct Cone {
 
   /// @eq{contact-round-support}
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
+  static V3<T> support(const geometry::Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
     const ApexAndBase parts(s, blur, end(blur));
     const V3<T> apex = parts.H * axes[2],
                 base = parts.height * axes[2] +
@@ -83,7 +85,7 @@ struct Cone {
     return 0.5 * (apex + base + (more / root) * d + (soft / root) * n) + s.rounding * n;
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
+  static CurvedSupport curved_support(const geometry::Shape& s, const Vec3& n, double blur) {
     const ApexAndBase parts(s, blur, end(blur));
     CurvedSupport c = curved_ellipsoid(parts.disc(n.z()), n);
     const Vec3 apex = parts.H * Vec3::UnitZ(), base = c.x + parts.height * Vec3::UnitZ(),
@@ -99,7 +101,7 @@ struct Cone {
 
   /// The point on the flank depends on the ratio of the components along and across it, over the
   /// blur, and that on a flat end on that of those across and along the axis, over the bulge.
-  static Vec3 sharpened(const Shape& s, const Vec3& n, double from, double to) {
+  static Vec3 sharpened(const geometry::Shape& s, const Vec3& n, double from, double to) {
     const double R = s.half[0], length = 2.0 * s.half[2], slant = std::hypot(R, length);
     const double q = std::hypot(n.x(), n.y());
     const double across = (q * length + n.z() * R) / slant,
@@ -119,18 +121,19 @@ struct Cone {
 
 }  // namespace
 
-Shape cone(std::string_view where, double diameter, double length, const ShapePlace& place,
-           double rounding) {
-  check_positive(where, "diameter", diameter);
-  check_positive(where, "length", length);
+geometry::Shape cone(std::string_view where, double diameter, double length,
+                     const geometry::ShapePlace& place, double rounding) {
+  geometry::check_positive(where, "diameter", diameter);
+  geometry::check_positive(where, "length", length);
   const double radius = 0.5 * diameter;
-  check_rounding(where, rounding, 0.25 * std::min(radius, length));
-  if (rounding == 0.0) rounding = 0.5 * kRounding * std::min(radius, length);
+  geometry::check_rounding(where, rounding, 0.25 * std::min(radius, length));
+  if (rounding == 0.0) rounding = 0.5 * geometry::kRounding * std::min(radius, length);
   // Cone whose base and lateral surface are offset inward by the rounding.
   const double above_base = rounding, below_apex = rounding * std::hypot(radius, length) / radius;
   const double core_length = length - above_base - below_apex;
   const double core_radius = radius * core_length / length;
-  Shape s = round_shape(cone_solid(), {core_radius, core_radius, 0.5 * core_length}, place);
+  geometry::Shape s =
+      round_shape(cone_solid(), {core_radius, core_radius, 0.5 * core_length}, place);
   s.chords.head<2>() *= 0.5;
   s.centre += 0.5 * (above_base - below_apex) * s.axes.col(2);
   s.rounding = rounding;
@@ -139,7 +142,7 @@ Shape cone(std::string_view where, double diameter, double length, const ShapePl
   s.points.push_back(static_cast<int>(s.corners.size()));
   s.face_points.push_back(s.points.back());
   s.corners.push_back(s.centre + s.half[2] * s.axes.col(2));
-  set_bounds(s, s.centre, std::hypot(radius, 0.5 * length) + below_apex);
+  geometry::set_bounds(s, s.centre, std::hypot(radius, 0.5 * length) + below_apex);
   return s;
 }
 

@@ -9,8 +9,8 @@ namespace polhode::contact {
 /// @param diameter, length  Full lengths [m].
 /// @param rounding  Radius of rim and apex; 0: 1e-3 of the smallest half size.
 /// @throws InputError if a size or the rounding is rejected.
-[[nodiscard]] Shape cone(std::string_view where, double diameter, double length,
-                         const ShapePlace& place = {}, double rounding = 0.0);
+[[nodiscard]] geometry::Shape cone(std::string_view where, double diameter, double length,
+                                   const geometry::ShapePlace& place = {}, double rounding = 0.0);
 [[nodiscard]] const RoundSolid& cone_solid();
 
 }  // namespace polhode::contact

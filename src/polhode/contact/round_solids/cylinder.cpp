@@ -20,7 +20,7 @@ struct NeedleAndDisc {
   Vec3 disc, needle;  ///< Semi-axes [m].
 
   /// @param e  Half thickness of the needle, as a part of its length.
-  NeedleAndDisc(const Shape& s, double e, double end) {
+  NeedleAndDisc(const geometry::Shape& s, double e, double end) {
     const double R = s.half[0], H = s.half[2], d = std::min(end, 0.5 * H / R);
     // h + r d = H along the axis and r + h e = R across it.
     const double h = (H - d * R) / (1.0 - d * e), r = std::max(kThinnest * R, R - h * e);
@@ -32,13 +32,14 @@ struct NeedleAndDisc {
 /// Functions of RoundSolid.
 template <bool flat>
 struct Cylinder {
-  static Shape shape(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
-                     double /*rounding*/) {
+  static geometry::Shape shape(std::string_view where, std::span<const double> sizes,
+                               const geometry::ShapePlace& place, double /*rounding*/) {
     return cylinder(where, sizes[0], sizes[1], place);
   }
 
   template <class T>
-  static Gap<T> over(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  static Gap<T> over(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                     const Placement<T>& at_b) {
     const Meridian<T> m(x, b, at_b);
     const double R = b.half[0], H = b.half[2], h = value(m.h), q = value(m.q);
     const double side = h < 0.0 ? -1.0 : 1.0;
@@ -52,12 +53,12 @@ struct Cylinder {
 
   /// @eq{contact-round-support}
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
+  static V3<T> support(const geometry::Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
     const NeedleAndDisc sum(s, blur, end(blur));
     return of_ellipsoid(sum.disc, axes, n) + of_ellipsoid(sum.needle, axes, n) + s.rounding * n;
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
+  static CurvedSupport curved_support(const geometry::Shape& s, const Vec3& n, double blur) {
     const NeedleAndDisc sum(s, blur, end(blur));
     const CurvedSupport disc = curved_ellipsoid(sum.disc, n),
                         needle = curved_ellipsoid(sum.needle, n);
@@ -67,7 +68,7 @@ struct Cylinder {
 
   /// The point on the needle depends on the ratio of the components along and across the axis, over
   /// the blur, and that on the disc on the inverse.
-  static Vec3 sharpened(const Shape& /*s*/, const Vec3& n, double from, double to) {
+  static Vec3 sharpened(const geometry::Shape& /*s*/, const Vec3& n, double from, double to) {
     const double across = std::hypot(n.x(), n.y()), along = std::abs(n.z());
     if (along <= kFar * from * across) return {n.x(), n.y(), to / from * n.z()};
     if (!flat || across > kFar * end(from) * along) return n;
@@ -82,17 +83,19 @@ struct Cylinder {
 
 }  // namespace
 
-Shape cylinder(std::string_view where, double diameter, double length, const ShapePlace& place) {
-  check_positive(where, "diameter", diameter);
-  check_positive(where, "length", length);
-  const double rounding = 0.5 * kRounding * std::min(diameter, length);
+geometry::Shape cylinder(std::string_view where, double diameter, double length,
+                         const geometry::ShapePlace& place) {
+  geometry::check_positive(where, "diameter", diameter);
+  geometry::check_positive(where, "length", length);
+  const double rounding = 0.5 * geometry::kRounding * std::min(diameter, length);
   const double radius = 0.5 * diameter - rounding;
-  Shape s = round_shape(cylinder_solid(), {radius, radius, 0.5 * length - rounding}, place);
+  geometry::Shape s =
+      round_shape(cylinder_solid(), {radius, radius, 0.5 * length - rounding}, place);
   s.rounding = rounding;
   s.detail = 0.5 * std::min(diameter, length);
   add_flat_end(s, -s.half[2], radius);
   add_flat_end(s, s.half[2], radius);
-  set_bounds(s, s.centre, std::hypot(radius, s.half[2]) + rounding);
+  geometry::set_bounds(s, s.centre, std::hypot(radius, s.half[2]) + rounding);
   return s;
 }
 

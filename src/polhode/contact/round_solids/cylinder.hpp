@@ -7,8 +7,8 @@ namespace polhode::contact {
 
 /// Lengths are those of the model file: diameter and full length, along z of the placement.
 /// @throws InputError if a size is not positive and finite.
-[[nodiscard]] Shape cylinder(std::string_view where, double diameter, double length,
-                             const ShapePlace& place = {});
+[[nodiscard]] geometry::Shape cylinder(std::string_view where, double diameter, double length,
+                                       const geometry::ShapePlace& place = {});
 [[nodiscard]] const RoundSolid& cylinder_solid();
 
 }  // namespace polhode::contact

@@ -11,14 +11,15 @@ namespace {
 
 /// Functions of RoundSolid.
 struct Ellipsoid {
-  static Shape shape(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
-                     double /*rounding*/) {
+  static geometry::Shape shape(std::string_view where, std::span<const double> sizes,
+                               const geometry::ShapePlace& place, double /*rounding*/) {
     return ellipsoid(where, {sizes[0], sizes[1], sizes[2]}, place);
   }
 
   /// Root with derivatives, by one Newton step in T from the root found in plain numbers.
   template <class T>
-  static Gap<T> over(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  static Gap<T> over(const V3<T>& x, double rho_a, const geometry::Shape& b,
+                     const Placement<T>& at_b) {
     const V3<T> w = x - at_b.point(b.centre);
     V3<T> axis[3];
     T y[3];
@@ -28,7 +29,7 @@ struct Ellipsoid {
       y[i] = dot(axis[i], w);
       Y[i] = value(y[i]);
     }
-    T t(nearest_on_ellipsoid(b.half, Y));
+    T t(geometry::nearest_on_ellipsoid(b.half, Y));
     // At the middle of the shortest axis the root is double: a step might leave on the wrong side.
     const double shortest = b.half.minCoeff();
     const bool double_root = value(t) < -(1.0 - 1e-6) * shortest * shortest;
@@ -54,20 +55,20 @@ struct Ellipsoid {
   }
 
   template <class T>
-  static V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
+  static V3<T> support(const geometry::Shape& s, const V3<T>* axes, const V3<T>& n, double blur) {
     return of_ellipsoid(thickened(s, blur), axes, n);
   }
 
-  static CurvedSupport curved_support(const Shape& s, const Vec3& n, double blur) {
+  static CurvedSupport curved_support(const geometry::Shape& s, const Vec3& n, double blur) {
     return curved_ellipsoid(thickened(s, blur), n);
   }
 
-  static Vec3 sharpened(const Shape& s, const Vec3& n, double from, double to) {
+  static Vec3 sharpened(const geometry::Shape& s, const Vec3& n, double from, double to) {
     return n.cwiseProduct(thickened(s, from).cwiseQuotient(thickened(s, to)).cwiseAbs2());
   }
 
  private:
-  static Vec3 thickened(const Shape& s, double blur) {
+  static Vec3 thickened(const geometry::Shape& s, double blur) {
     const Vec3 half = s.half + Vec3::Constant(s.rounding);
     return half.cwiseMax(blur * half.maxCoeff());
   }
@@ -75,13 +76,14 @@ struct Ellipsoid {
 
 }  // namespace
 
-Shape ellipsoid(std::string_view where, const Vec3& size, const ShapePlace& place) {
-  for (int i = 0; i < 3; ++i) check_positive(where, "size", size[i]);
-  const double rounding = 0.5 * kRounding * size.minCoeff();
-  Shape s = round_shape(ellipsoid_solid(), 0.5 * size - Vec3::Constant(rounding), place);
+geometry::Shape ellipsoid(std::string_view where, const Vec3& size,
+                          const geometry::ShapePlace& place) {
+  for (int i = 0; i < 3; ++i) geometry::check_positive(where, "size", size[i]);
+  const double rounding = 0.5 * geometry::kRounding * size.minCoeff();
+  geometry::Shape s = round_shape(ellipsoid_solid(), 0.5 * size - Vec3::Constant(rounding), place);
   s.rounding = rounding;
   s.detail = 0.5 * size.minCoeff();
-  set_bounds(s, place.origin, 0.5 * size.maxCoeff());
+  geometry::set_bounds(s, place.origin, 0.5 * size.maxCoeff());
   return s;
 }
 

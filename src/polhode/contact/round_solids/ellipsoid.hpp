@@ -7,8 +7,8 @@ namespace polhode::contact {
 
 /// @param size  Full lengths of the axes [m].
 /// @throws InputError if a size is not positive and finite.
-[[nodiscard]] Shape ellipsoid(std::string_view where, const Vec3& size,
-                              const ShapePlace& place = {});
+[[nodiscard]] geometry::Shape ellipsoid(std::string_view where, const Vec3& size,
+                                        const geometry::ShapePlace& place = {});
 [[nodiscard]] const RoundSolid& ellipsoid_solid();
 
 }  // namespace polhode::contact

@@ -12,7 +12,7 @@ struct Meridian {
   T h, q;
   V3<T> axis, outward;  ///< Unit.
 
-  Meridian(const V3<T>& x, const Shape& b, const Placement<T>& at_b) {
+  Meridian(const V3<T>& x, const geometry::Shape& b, const Placement<T>& at_b) {
     axis = at_b.vector(b.axes.col(2));
     const V3<T> w = x - at_b.point(b.centre);
     h = dot(axis, w);
@@ -25,7 +25,7 @@ struct Meridian {
       outward = at_b.vector(b.axes.col(0));
     }
   }
-  [[nodiscard]] V3<T> point(const Placement<T>& at_b, const Shape& b, double h_0,
+  [[nodiscard]] V3<T> point(const Placement<T>& at_b, const geometry::Shape& b, double h_0,
                             double q_0) const {
     return at_b.point(b.centre) + h_0 * axis + q_0 * outward;
   }

@@ -8,7 +8,7 @@ namespace polhode::contact {
 namespace {
 
 template <class T>
-Gap<T> over_ring(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+Gap<T> over_ring(const V3<T>& x, double rho_a, const geometry::Shape& b, const Placement<T>& at_b) {
   const Meridian<T> m(x, b, at_b);
   return between_points(x, m.point(at_b, b, 0.0, b.half[0]), rho_a, b.rounding);
 }

@@ -11,6 +11,8 @@ namespace polhode::contact {
 /// is parallel to a plane.
 [[nodiscard]] const RoundSolid& ring_solid();
 
-[[nodiscard]] inline bool is_ring(const Shape& part) { return part.round_solid == &ring_solid(); }
+[[nodiscard]] inline bool is_ring(const geometry::Shape& part) {
+  return part.round_solid == &ring_solid();
+}
 
 }  // namespace polhode::contact

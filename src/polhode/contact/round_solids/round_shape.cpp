@@ -13,9 +13,10 @@ constexpr double kStandingRadius = 0.9;  ///< Radius of those against faces, as 
 
 }  // namespace
 
-Shape round_shape(const RoundSolid& kind, const Vec3& half, const ShapePlace& place) {
-  Shape s;
-  s.solid = Solid::round;
+geometry::Shape round_shape(const RoundSolid& kind, const Vec3& half,
+                            const geometry::ShapePlace& place) {
+  geometry::Shape s;
+  s.solid = geometry::Solid::round;
   s.round_solid = &kind;
   s.centre = place.origin;
   s.axes = place.axes;
@@ -23,7 +24,7 @@ Shape round_shape(const RoundSolid& kind, const Vec3& half, const ShapePlace& pl
   return s;
 }
 
-void add_flat_end(Shape& s, double height, double radius) {
+void add_flat_end(geometry::Shape& s, double height, double radius) {
   s.flat_ends.push_back({height, radius});
   for (const double part : {1.0, kStandingRadius})
     for (int k = 0; k < kRimPoints; ++k) {

@@ -10,11 +10,12 @@ namespace polhode::contact {
 
 /// A shape of that kind without rounding, ends and bounds.
 /// @param half  From its centre to the ends of its extent, along its axes [m].
-[[nodiscard]] Shape round_shape(const RoundSolid& kind, const Vec3& half, const ShapePlace& place);
+[[nodiscard]] geometry::Shape round_shape(const RoundSolid& kind, const Vec3& half,
+                                          const geometry::ShapePlace& place);
 
 /// Adds a flat end, the points of its rim, and those that support it when it stands on a face:
 /// slightly inside, so that a tilted rim rolls on its disc.
-void add_flat_end(Shape& s, double height, double radius);
+void add_flat_end(geometry::Shape& s, double height, double radius);
 
 /// Ratio of two components of a direction, over the blur, beyond which the support point of a
 /// straight side is near its end.

@@ -26,10 +26,10 @@ inline constexpr double fine = 1e-6;
 template <class T>
 struct RoundFormulas {
   /// Gap of a ball of radius rho around the point x against the solid b.
-  Gap<T> (*over)(const V3<T>& x, double rho, const Shape& b, const Placement<T>& at_b);
+  Gap<T> (*over)(const V3<T>& x, double rho, const geometry::Shape& b, const Placement<T>& at_b);
   /// Support point, from the centre, in the unit direction n; smooth in n, rounding included.
   /// @param axes  The three of the solid, in the world. @param blur  See namespace blur.
-  V3<T> (*support)(const Shape& s, const V3<T>* axes, const V3<T>& n, double blur);
+  V3<T> (*support)(const geometry::Shape& s, const V3<T>* axes, const V3<T>& n, double blur);
 };
 
 /// A kind of convex solid with a smooth surface that is not a polyhedron. It is an ellipsoid, or
@@ -41,12 +41,12 @@ struct RoundSolid {
   /// @param place  Of the centroid.
   /// @param rounding  Of edges and corners, if the kind has a choice; 0: its default [m].
   /// @throws InputError if a size or the rounding is rejected.
-  Shape (*shape)(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
-                 double rounding);
+  geometry::Shape (*shape)(std::string_view where, std::span<const double> sizes,
+                           const geometry::ShapePlace& place, double rounding);
   /// As RoundFormulas::support(), with n in the solid's own axes.
-  CurvedSupport (*curved_support)(const Shape& s, const Vec3& n, double blur);
+  CurvedSupport (*curved_support)(const geometry::Shape& s, const Vec3& n, double blur);
   /// Direction, of any length, whose support point at blur `to` is near that of n at blur `from`.
-  Vec3 (*sharpened)(const Shape& s, const Vec3& n, double from, double to);
+  Vec3 (*sharpened)(const geometry::Shape& s, const Vec3& n, double from, double to);
   RoundFormulas<double> plain;
   RoundFormulas<Dual> dual;
   RoundFormulas<Fine> fine;

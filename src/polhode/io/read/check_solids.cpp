@@ -9,7 +9,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Components of a path such as solids.pad.mesh.elements[3].
@@ -29,14 +29,14 @@ std::vector<std::string> parts_of(std::string_view path) {
 void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputError>& faults) {
   const std::string where = format("loads.{}", load.name);
   try {
-    switch (solid_load_kind(where + ".type", load.type).place) {
-      case SolidLoadPlace::faces:
-        static_cast<void>(select_faces(where + ".surface", plan.mesh, load.selection));
+    switch (solids::solid_load_kind(where + ".type", load.type).place) {
+      case solids::SolidLoadPlace::faces:
+        static_cast<void>(solids::select_faces(where + ".surface", plan.mesh, load.selection));
         break;
-      case SolidLoadPlace::nodes:
-        static_cast<void>(select_nodes(where + ".nodes", plan.mesh, load.selection));
+      case solids::SolidLoadPlace::nodes:
+        static_cast<void>(solids::select_nodes(where + ".nodes", plan.mesh, load.selection));
         break;
-      case SolidLoadPlace::elements:
+      case solids::SolidLoadPlace::elements:
         break;
     }
   } catch (const InputError& e) {
@@ -124,4 +124,4 @@ void check_solids(ReadContext& context, const SourceNode& root) {
                             sentence(e.hint()));
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -4,7 +4,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Rejects entries without meaning in an analysis of this type.
@@ -87,4 +87,4 @@ void read_output(ReadContext& context, const SourceNode& node, const SourceLocat
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -9,7 +9,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/solids/materials/material_kind.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Data of a material for beams.
@@ -75,7 +75,7 @@ class SectionReader {
       return std::all_of(names.begin(), names.end(),
                          [&](const auto& name) { return spec.parameters.contains(name); });
     };
-    const auto sets = isotropic_alternatives();
+    const auto sets = solids::isotropic_alternatives();
     if (spec.fibre || std::none_of(sets.begin(), sets.end(), is_isotropic)) {
       section_.fault("material",
                      format("{} is {}, without the two moduli of an isotropic material",
@@ -83,7 +83,7 @@ class SectionReader {
                      "Name a material of type elastic.");
       return std::nullopt;
     }
-    const auto [lame, shear] = isotropic_moduli(spec.parameters);
+    const auto [lame, shear] = solids::isotropic_moduli(spec.parameters);
     if (!(spec.density > 0.0)) {
       section_.fault("material", format("{} has no density", quote(spec.name)),
                      "Give the material a density.");
@@ -485,4 +485,4 @@ void read_cables(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

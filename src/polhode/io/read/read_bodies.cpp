@@ -7,7 +7,7 @@
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Reader of one body; errors go to the context.
@@ -114,7 +114,7 @@ class BodyReader {
 
   void check_mass() {
     try {
-      check_mass_properties(section_.path(), body_.mass, body_.inertia);
+      geometry::check_mass_properties(section_.path(), body_.mass, body_.inertia);
     } catch (const InputError& error) {
       section_.fault("inertia", error.what_is_wrong(), error.hint());
     }
@@ -122,7 +122,7 @@ class BodyReader {
 
   /// Mass, centre of mass and inertia of the shapes, with their densities or a given mass.
   void weigh_shapes(const std::optional<double>& mass, const std::optional<double>& density) {
-    std::vector<MassProperties> parts;
+    std::vector<geometry::MassProperties> parts;
     for (const ShapeSpec& shape : body_.shapes) {
       if (!weighs(shape)) continue;
       std::optional<double> rho = shape.density ? shape.density : density;
@@ -135,7 +135,7 @@ class BodyReader {
       if (const auto part = weigh(shape, *rho)) parts.push_back(*part);
     }
     if (parts.empty()) return;
-    MassProperties whole = composed(parts);
+    geometry::MassProperties whole = geometry::composed(parts);
     if (section_.has("com"))
       section_.fault("com", "cannot be combined with shapes, which have a centre of mass",
                      "Leave it out, or give mass and inertia.");
@@ -144,13 +144,15 @@ class BodyReader {
     if (!body_.point_mass) body_.inertia = body_.mass / whole.mass * whole.inertia;
   }
 
-  std::optional<MassProperties> weigh(const ShapeSpec& shape, double density) {
+  std::optional<geometry::MassProperties> weigh(const ShapeSpec& shape, double density) {
     const std::string path = section_.path("shape");
     try {
       const Mat3 R = shape.orientation.toRotationMatrix();
-      if (const ShapeKind* kind = find_shape_kind(shape.type))
-        return placed(shape_mass_properties(path, *kind, shape.sizes, density), shape.position, R);
-      return placed(mass_properties(shape_surface(path, shape, 0), density), shape.position, R);
+      if (const geometry::ShapeKind* kind = geometry::find_shape_kind(shape.type))
+        return geometry::placed(geometry::shape_mass_properties(path, *kind, shape.sizes, density),
+                                shape.position, R);
+      return geometry::placed(geometry::mass_properties(shape_surface(path, shape, 0), density),
+                              shape.position, R);
     } catch (const InputError& error) {
       const bool of_mesh = error.where() != path;
       context_.diagnostics.add(shape.place, path,
@@ -277,4 +279,4 @@ void read_bodies(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

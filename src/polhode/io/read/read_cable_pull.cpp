@@ -2,7 +2,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -43,4 +43,4 @@ void read_cable_pull(ReadContext& context, Section& section, CableLineSpec& cabl
                   "A sliding cable has the strain l/L - 1: leave it out.");
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -4,7 +4,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/simulation/probe_columns.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::optional<ReadChannel> read_channel(ReadContext& context, Section& section) 
   return channel;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

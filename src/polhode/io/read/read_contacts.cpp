@@ -11,7 +11,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Smallest restitution that a damper can produce.
@@ -441,4 +441,4 @@ void check_contacts(ReadContext& context, const SourceNode& root) {
                             sentence(e.hint()));
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -14,7 +14,7 @@
 #include <polhode/io/text/source_tree.hpp>
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Source of a part: a file, or a map within one.
 struct PartSource {
@@ -111,8 +111,9 @@ std::optional<int> read_index(ReadContext& context, const SourceNode& node,
 std::optional<std::vector<int>> read_indices(ReadContext& context, const SourceNode& node,
                                              const std::string& path);
 /// Nodes or faces of a solid: a set's name, a map, or a list of these.
-std::optional<std::vector<Selection>> read_selections(ReadContext& context, const SourceNode& node,
-                                                      const std::string& path);
+std::optional<std::vector<solids::Selection>> read_selections(ReadContext& context,
+                                                              const SourceNode& node,
+                                                              const std::string& path);
 /// Path of an existing file, relative to the model file's folder.
 std::optional<std::string> read_file_name(ReadContext& context, const SourceNode& node,
                                           const std::string& path);
@@ -278,4 +279,4 @@ SourceLocation place_of_path(const ReadContext& context, const SourceNode& root,
 /// Checks that require the whole model: orders against loads, etc.
 void check_model(ReadContext& context, const SourceNode& root);
 
-}  // namespace polhode
+}  // namespace polhode::io

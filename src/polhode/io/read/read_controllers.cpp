@@ -6,7 +6,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/simulation/probe_columns.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -119,4 +119,4 @@ void read_controllers(ReadContext& context, const SourceNode& node) {
   refuse_controlled_motion(context);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/model/switched_contacts.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -119,4 +119,4 @@ void read_events(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

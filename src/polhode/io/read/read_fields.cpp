@@ -6,7 +6,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 [[noreturn]] void refuse_binding(const Field& field) {
@@ -94,4 +94,4 @@ std::optional<double> Section::step(const std::string& name) {
   return number(name);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 #include <polhode/joints/registry.hpp>
 #include <polhode/math/dense.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Pose of a body at the start; for the ground the world.
@@ -383,4 +383,4 @@ void read_joints(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -5,7 +5,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/io/read/time_function.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Force as a function of a coordinate, given by points.
@@ -83,4 +83,4 @@ TimeFunctionPtr read_law(ReadContext& context, const SourceNode& node, const std
   return std::make_shared<ExpressionFunction>(expression, *factor);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -11,7 +11,7 @@
 #include <polhode/loads/registry.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// World point at the start, relative to a body's centre of mass in its axes.
@@ -50,7 +50,7 @@ class LoadReader {
 
   void read() {
     if (table_.find("solid")) {
-      read_on_solid(solid_load_kind(section_.path("type"), load_.type));
+      read_on_solid(solids::solid_load_kind(section_.path("type"), load_.type));
     } else {
       read_on_bodies(load_kind(load_.type));
     }
@@ -121,7 +121,7 @@ class LoadReader {
   }
 
   /// A load on nodes or faces of a deformable solid.
-  void read_on_solid(const SolidLoadKind& kind) {
+  void read_on_solid(const solids::SolidLoadKind& kind) {
     if (const SourceNode* value = section_.find("solid"))
       if (const auto solid = read_solid_name(context_, *value, section_.path("solid")))
         load_.solid = *solid;
@@ -449,4 +449,4 @@ void read_loads(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

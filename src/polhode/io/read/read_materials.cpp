@@ -4,7 +4,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/solids/materials/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Reader of one material; errors go to the context.
@@ -64,7 +64,7 @@ class MaterialReader {
   /// Checks by the law itself, such as incompatible moduli.
   void check() {
     try {
-      static_cast<void>(make_material(section_.path(), material_description(material_)));
+      static_cast<void>(solids::make_material(section_.path(), material_description(material_)));
     } catch (const InputError& e) {
       section_.fault(e.what_is_wrong(), sentence(e.hint()));
     }
@@ -96,4 +96,4 @@ void read_materials(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 void read_units(ReadContext& context, const SourceNode& node) {
   const FieldTable& table = units_fields();
@@ -235,4 +235,4 @@ Model read_model(const std::filesystem::path& file, const Overrides& overrides) 
   return read_model_text(read_file(file.string()), file.string(), overrides);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

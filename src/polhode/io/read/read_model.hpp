@@ -8,7 +8,7 @@
 #include <polhode/io/text/model_errors.hpp>
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Overrides as on the command line, each "path=value": the name of a variable ("L=1.2"), or keys
 /// and list indices joined by dots ("bodies.crank.mass=2", "joints.A.at.0=0.1"). The value is
@@ -26,4 +26,4 @@ using Overrides = std::vector<std::string>;
 [[nodiscard]] Model read_model_text(std::string text, const std::string& filename,
                                     const Overrides& overrides = {});
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -2,7 +2,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::optional<FrameMotion> read_motion(ReadContext& context, Section& section,
   return any ? std::optional(motion) : std::nullopt;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

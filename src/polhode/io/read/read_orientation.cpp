@@ -6,7 +6,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 constexpr const char* kForms =
@@ -126,4 +126,4 @@ std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& nod
   return angle > 0.0 ? turn(*vector / angle, angle) : Quat::Identity();
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/model/part_placement.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -194,4 +194,4 @@ void read_parts(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,7 +6,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -195,4 +195,4 @@ bool read_recorded(ReadContext& context, Section& section, const std::vector<std
   return context.diagnostics.size() == before;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

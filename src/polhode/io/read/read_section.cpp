@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
                 const std::string& collection) {
@@ -205,4 +205,4 @@ std::optional<std::array<int, 2>> Section::body_pair(const std::string& name) {
   return read_body_pair(context_, *node, path(name));
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -4,20 +4,21 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
-using Kind = Selection::Kind;
+using Kind = solids::Selection::Kind;
 
 bool read_plane(ReadContext& context, const SourceNode& node, const std::string& path,
-                Selection& selection) {
+                solids::Selection& selection) {
   Section section(context, node, context.tree.place_of(node), path, plane_fields());
   const auto normal = section.direction("axis");
   const SourceNode* at = section.find("at");
   if (!normal || !at) return false;
   selection.normal = *normal;
   if (at->is_text() && (at->text == "min" || at->text == "max")) {
-    selection.level = at->text == "min" ? Selection::Level::kMin : Selection::Level::kMax;
+    selection.level =
+        at->text == "min" ? solids::Selection::Level::kMin : solids::Selection::Level::kMax;
     return true;
   }
   if (const std::string guess =
@@ -33,7 +34,7 @@ bool read_plane(ReadContext& context, const SourceNode& node, const std::string&
 }
 
 bool read_box(ReadContext& context, const SourceNode& node, const std::string& path,
-              Selection& selection) {
+              solids::Selection& selection) {
   Section section(context, node, context.tree.place_of(node), path, box_fields());
   const auto from = section.vector("from"), to = section.vector("to");
   if (!from || !to) return false;
@@ -43,7 +44,7 @@ bool read_box(ReadContext& context, const SourceNode& node, const std::string& p
 }
 
 bool read_sphere(ReadContext& context, const SourceNode& node, const std::string& path,
-                 Selection& selection) {
+                 solids::Selection& selection) {
   Section section(context, node, context.tree.place_of(node), path, sphere_fields());
   const auto centre = section.vector("centre");
   const auto radius = section.number("radius");
@@ -54,9 +55,9 @@ bool read_sphere(ReadContext& context, const SourceNode& node, const std::string
   return true;
 }
 
-std::optional<Selection> read_one(ReadContext& context, const SourceNode& node,
-                                  const std::string& path) {
-  Selection selection;
+std::optional<solids::Selection> read_one(ReadContext& context, const SourceNode& node,
+                                          const std::string& path) {
+  solids::Selection selection;
   if (node.is_text()) {
     selection.kind = Kind::kSet;
     selection.set = node.text;
@@ -137,9 +138,10 @@ std::optional<std::vector<int>> read_indices(ReadContext& context, const SourceN
   return indices;
 }
 
-std::optional<std::vector<Selection>> read_selections(ReadContext& context, const SourceNode& node,
-                                                      const std::string& path) {
-  std::vector<Selection> selections;
+std::optional<std::vector<solids::Selection>> read_selections(ReadContext& context,
+                                                              const SourceNode& node,
+                                                              const std::string& path) {
+  std::vector<solids::Selection> selections;
   if (!node.is_list()) {
     auto one = read_one(context, node, path);
     if (!one) return std::nullopt;
@@ -160,4 +162,4 @@ std::optional<std::vector<Selection>> read_selections(ReadContext& context, cons
   return selections;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,28 +6,30 @@
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::vector<std::string> shape_names() {
   std::vector<std::string> names;
-  for (const ShapeKind& kind : shape_kinds()) names.push_back(kind.name);
+  for (const geometry::ShapeKind& kind : geometry::shape_kinds()) names.push_back(kind.name);
   for (const char* name : {"mesh", "hull", "height_field", "plane"}) names.emplace_back(name);
   return names;
 }
 
 /// Sizes as a list in order, as a map by name, or, if there is only one, as a number.
 std::optional<std::vector<double>> read_sizes(ReadContext& context, const SourceNode& node,
-                                              const std::string& path, const ShapeKind& kind) {
+                                              const std::string& path,
+                                              const geometry::ShapeKind& kind) {
   const Field& field = shape_fields().at(kind.name);
   std::string order;
-  for (const ShapeSize& size : kind.sizes) order += (order.empty() ? "" : ", ") + size.name;
+  for (const geometry::ShapeSize& size : kind.sizes)
+    order += (order.empty() ? "" : ", ") + size.name;
   std::vector<double> sizes;
   if (node.is_map()) {
     FieldTable table{"shape " + kind.name, kind.meaning, {}};
-    for (const ShapeSize& size : kind.sizes) {
+    for (const geometry::ShapeSize& size : kind.sizes) {
       table.fields.push_back({.name = size.name,
                               .kind = FieldKind::kNumber,
                               .dimension = dimensions::kLength,
@@ -36,7 +38,7 @@ std::optional<std::vector<double>> read_sizes(ReadContext& context, const Source
                               .range = kPositive});
     }
     Section section(context, node, context.tree.place_of(node), path, table);
-    for (const ShapeSize& size : kind.sizes)
+    for (const geometry::ShapeSize& size : kind.sizes)
       if (const auto value = section.number(size.name)) sizes.push_back(*value);
   } else if (node.is_text() && kind.sizes.size() == 1) {
     if (const auto value = read_number(context, node, path, field)) sizes.push_back(*value);
@@ -54,7 +56,7 @@ std::optional<std::vector<double>> read_sizes(ReadContext& context, const Source
   }
   if (sizes.size() != kind.sizes.size()) return std::nullopt;
   try {
-    check_shape_sizes(path, kind, sizes);
+    geometry::check_shape_sizes(path, kind, sizes);
   } catch (const InputError& error) {
     context.fault(node, path, error.what_is_wrong(), error.hint());
     return std::nullopt;
@@ -196,8 +198,8 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
     if (!normal) return std::nullopt;
     shape.sizes = {normal->x(), normal->y(), normal->z()};
   } else {
-    auto values =
-        read_sizes(context, *sizes, section.path(shape.type), *find_shape_kind(shape.type));
+    auto values = read_sizes(context, *sizes, section.path(shape.type),
+                             *geometry::find_shape_kind(shape.type));
     if (!values) return std::nullopt;
     shape.sizes = std::move(*values);
   }
@@ -233,4 +235,4 @@ std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
   return shapes;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

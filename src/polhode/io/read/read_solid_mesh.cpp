@@ -2,7 +2,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Reader of the source of a mesh; errors go to the context.
@@ -136,4 +136,4 @@ void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::st
   SolidMeshReader(context, node, path, mesh).read();
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Index of an object by name; an error that lists the existing names.
@@ -107,7 +107,7 @@ class SolidReader {
       Section section(context_, node.children[k], spec.place, path + "." + key.name,
                       prescribed_fields());
       if (!node.children[k].is_map()) continue;
-      std::optional<std::vector<Selection>> nodes;
+      std::optional<std::vector<solids::Selection>> nodes;
       if (const SourceNode* value = section.find("nodes"))
         nodes = read_selections(context_, *value, section.path("nodes"));
       bool any = false;
@@ -157,4 +157,4 @@ void read_solids(ReadContext& context, const SourceNode& node) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

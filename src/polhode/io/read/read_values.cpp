@@ -6,7 +6,7 @@
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/io/read/time_function.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 constexpr std::size_t kMaxSuggestions = 1000;
@@ -445,4 +445,4 @@ std::optional<std::array<int, 2>> read_body_pair(ReadContext& context, const Sou
   return std::array<int, 2>{*a, *b};
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

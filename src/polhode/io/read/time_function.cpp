@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Solves a tridiagonal system (Thomas); lower[0] and upper[n-1] are not used.
@@ -193,4 +193,4 @@ TimeBounds TableFunction::bounds(double from, double to) const {
   return b;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 #include <polhode/io/text/expression.hpp>
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A constant function of time.
 class ConstantFunction final : public TimeFunction {
@@ -77,4 +77,4 @@ class TableFunction final : public TimeFunction {
   bool periodic_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -11,7 +11,7 @@
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/system/state_archive.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -60,4 +60,4 @@ State read_checkpoint(const std::string& path, const Model& model, const System&
   return state_from_bytes(system, bytes.substr(head, length), path);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -5,7 +5,7 @@
 
 #include <polhode/simulation/simulation_details.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Saves a state for an exactly equal continuation of the run. The file is written atomically and
 /// has a checksum. @throws FileError
@@ -18,4 +18,4 @@ void write_checkpoint(const std::string& path, const Model& model, const System&
 [[nodiscard]] State read_checkpoint(const std::string& path, const Model& model,
                                     const System& system);
 
-}  // namespace polhode
+}  // namespace polhode::io

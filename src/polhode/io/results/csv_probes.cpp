@@ -15,7 +15,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -127,4 +127,4 @@ void CsvProbes::flush() {
   for (Probe& probe : probes_) probe.table.flush();
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 
 #include <polhode/simulation/probe.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A table of numbers that grows row by row and contains complete lines only, even after a kill.
 class CsvTable {
@@ -57,4 +57,4 @@ class CsvProbes {
   std::vector<Probe> probes_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -10,7 +10,7 @@
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -68,4 +68,4 @@ void clear_earlier_results(const std::string& folder) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

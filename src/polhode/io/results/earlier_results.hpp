@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Removes files of an earlier run from a results folder that a new run might not overwrite:
 /// results.h5, tables of probes, events.csv, pictures, certificates. Other files, checkpoints and
@@ -16,4 +16,4 @@ void clear_earlier_results(const std::string& folder);
 void remove_numbered_files(const std::string& folder, const std::string& extension,
                            std::size_t first);
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/results/results_plan.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -34,7 +34,7 @@ void add_solids(const ResultsFrame& frame, std::vector<double>& numbers) {
   };
   for (std::size_t s = 0; s < frame.solids.size(); ++s) {
     const SolidReport& report = frame.solids[s];
-    const NodalFields& nodal = report.nodal;
+    const solids::NodalFields& nodal = report.nodal;
     for (const Vec3& x : report.displacement) vector(x);
     for (const Vec3& x : report.velocity) vector(x);
     for (const Mat3& T : nodal.cauchy) tensor(T);
@@ -42,7 +42,7 @@ void add_solids(const ResultsFrame& frame, std::vector<double>& numbers) {
     numbers.insert(numbers.end(), nodal.strain_energy_density.begin(),
                    nodal.strain_energy_density.end());
     for (const ElementSample& e : report.elements) tensor(e.cauchy);
-    for (const ElementSample& e : report.elements) numbers.push_back(von_mises(e.cauchy));
+    for (const ElementSample& e : report.elements) numbers.push_back(solids::von_mises(e.cauchy));
     for (const ElementSample& e : report.elements) vector(e.principal_stretches);
     for (const ElementSample& e : report.elements) numbers.push_back(e.strain_energy_density);
     numbers.insert(numbers.end(), nodal.stress_error.begin(), nodal.stress_error.end());
@@ -110,4 +110,4 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   add_lines(frame, numbers);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

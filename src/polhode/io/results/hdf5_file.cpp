@@ -19,7 +19,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -411,4 +411,4 @@ void Hdf5File::close() {
   m.require(m.file.close(), "cannot be closed");
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

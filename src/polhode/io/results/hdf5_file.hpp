@@ -8,7 +8,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A quantity that grows by one entry per frame.
 struct Channel {
@@ -70,4 +70,4 @@ class Hdf5File {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -5,7 +5,7 @@
 
 #include <hdf5.h>
 
-namespace polhode::hdf5 {
+namespace polhode::io::hdf5 {
 
 /// Owner of an HDF5 object, closed with it.
 class Id {
@@ -28,4 +28,4 @@ class Id {
   herr_t (*closer_)(hid_t) = nullptr;
 };
 
-}  // namespace polhode::hdf5
+}  // namespace polhode::io::hdf5

@@ -13,7 +13,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -136,7 +136,7 @@ class Fingerprint {
     add(c.name, c.channel, c.setpoint);
     add_fields(c, controller_fields());
   }
-  void one(const Selection& s) {
+  void one(const solids::Selection& s) {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,
         s.on_surface, s.tolerance, s.nodes);
   }
@@ -237,4 +237,4 @@ std::string model_fingerprint(const Model& model) {
   return f.hex();
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -5,11 +5,11 @@
 
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// SHA-256 of everything that a run depends on, including contents of mesh files, but not the
 /// duration, steps, solver or output, so that a run may be continued for longer. Time functions are
 /// represented by their values at a few hundred times.
 [[nodiscard]] std::string model_fingerprint(const Model& model);
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -11,14 +11,15 @@
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/math/dense.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
 /// Triangles around the circle of a round shape, sufficient for a picture.
 constexpr int kSegments = 24;
 
-void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, const Vec3& offset) {
+void append(geometry::TriangleSurface& sum, const geometry::TriangleSurface& part, const Mat3& R,
+            const Vec3& offset) {
   const int first = static_cast<int>(sum.points.size());
   for (const Vec3& p : part.points) sum.points.push_back(offset + R * p);
   for (const auto& [a, b, c] : part.triangles)
@@ -28,7 +29,7 @@ void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, co
 }  // namespace
 
 // I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
-TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) {
+geometry::TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) {
   const SymmetricEigen axes = eigen_of_symmetric(body.inertia);
   const Vec3& I = axes.values;
   Vec3 squares = 6.0 / body.mass * (Vec3::Constant(I.sum()) - 2.0 * I);
@@ -40,18 +41,18 @@ TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) 
   if (body.point_mass) lengths.assign(3, largest);
   Mat3 R = axes.vectors;
   if (R.determinant() < 0.0) R.col(2) *= -1.0;
-  TriangleSurface box;
-  append(box, shape_surface(*find_shape_kind("box"), lengths), R, Vec3::Zero());
+  geometry::TriangleSurface box;
+  append(box, geometry::shape_surface(*geometry::find_shape_kind("box"), lengths), R, Vec3::Zero());
   return box;
 }
 
 namespace {
 
 /// Square of a plane about its point, visible from both sides.
-TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {
+geometry::TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {
   const Vec3 n(normal[0], normal[1], normal[2]);
   const Mat3 R = rotation_between(Vec3::UnitZ(), n).toRotationMatrix();
-  TriangleSurface square;
+  geometry::TriangleSurface square;
   for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
     square.points.push_back(half_width * (x * R.col(0) + y * R.col(1)));
   square.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -66,10 +67,10 @@ double reach_from(const Vec3& point, const Model& model, double size) {
   return farthest;
 }
 
-TriangleSurface picture_of(const BodySpec& body, const Model& model, double size) {
-  TriangleSurface sum;
+geometry::TriangleSurface picture_of(const BodySpec& body, const Model& model, double size) {
+  geometry::TriangleSurface sum;
   for (const ShapeSpec& shape : body.shapes) {
-    TriangleSurface surface;
+    geometry::TriangleSurface surface;
     if (shape.type == "plane")
       surface = plane_patch(
           shape.sizes,
@@ -88,7 +89,7 @@ std::string vtp(const std::vector<BodyPicture>& pictures, const std::vector<Body
   std::vector<std::int32_t> owners;
   std::int64_t first = 0;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const TriangleSurface& surface = pictures[i].surface;
+    const geometry::TriangleSurface& surface = pictures[i].surface;
     const Mat3 Lambda = motions[i].Lambda();
     const Vec3 omega = motions[i].omega();
     for (const Vec3& Z : surface.points) {
@@ -131,7 +132,8 @@ std::vector<BodyPicture> body_pictures(const Model& model, double size) {
   const std::vector<bool> nodes = are_nodes(model);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodySpec& body = model.bodies[i];
-    pictures.push_back({body.name, nodes[i] ? TriangleSurface{} : picture_of(body, model, size)});
+    pictures.push_back(
+        {body.name, nodes[i] ? geometry::TriangleSurface{} : picture_of(body, model, size)});
   }
   return pictures;
 }
@@ -140,4 +142,4 @@ void ParaviewWriter::append(double t, const std::vector<BodyMotion>& motions) {
   series_.append(t, vtp(pictures_, motions));
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

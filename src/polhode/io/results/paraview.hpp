@@ -11,12 +11,12 @@
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/solid_report.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Picture of one body: triangles in body axes, relative to the centre of mass.
 struct BodyPicture {
   std::string name;
-  TriangleSurface surface;
+  geometry::TriangleSurface surface;
 };
 
 /// Pictures of the bodies of a model. A moving body without shapes is drawn as the box with its
@@ -30,8 +30,8 @@ struct BodyPicture {
 /// Box with the mass and inertia of a body, about its centre of mass, body axes; for a point mass a
 /// cube of 2 % of `size`.
 /// @param thinnest  Smallest side, as a part of the largest [-].
-[[nodiscard]] TriangleSurface inertia_box(const BodySpec& body, double size,
-                                          double thinnest = 0.02);
+[[nodiscard]] geometry::TriangleSurface inertia_box(const BodySpec& body, double size,
+                                                    double thinnest = 0.02);
 
 /// Moving shapes for ParaView, as a ParaviewSeries of .vtp files: the triangles of one time, with
 /// point data "velocity" [m/s], cell data "body" (index) and the names of the bodies as field data
@@ -55,7 +55,7 @@ class ParaviewWriter {
 };
 
 /// Nodes of a cell in the order of VTK, by their places in ours.
-[[nodiscard]] std::vector<std::size_t> vtk_order(const CellShape& shape);
+[[nodiscard]] std::vector<std::size_t> vtk_order(const solids::CellShape& shape);
 
 /// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points are the present
 /// positions of nodes. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
@@ -68,7 +68,7 @@ class SolidsWriter {
   /// @param keep    Continue existing files: times up to that one stay listed.
   /// @throws FileError
   SolidsWriter(const std::string& folder, const std::string& name, std::vector<std::string> solids,
-               std::vector<const Mesh*> meshes, std::optional<double> keep = std::nullopt)
+               std::vector<const solids::Mesh*> meshes, std::optional<double> keep = std::nullopt)
       : series_(folder, name, "vtu", keep),
         solids_(std::move(solids)),
         meshes_(std::move(meshes)) {}
@@ -81,7 +81,7 @@ class SolidsWriter {
  private:
   ParaviewSeries series_;
   std::vector<std::string> solids_;
-  std::vector<const Mesh*> meshes_;
+  std::vector<const solids::Mesh*> meshes_;
 };
 
 /// Beams and cables for ParaView, as a ParaviewSeries of .vtp files with a line for each element or
@@ -132,4 +132,4 @@ class ContactsWriter {
   std::vector<int> body_of_shape_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -2,7 +2,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/paraview.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 void ContactsWriter::append(double t, const std::vector<contact::TouchingPoint>& points) {
   std::vector<float> places, forces, frictions, normals, gaps;
@@ -40,4 +40,4 @@ void ContactsWriter::append(double t, const std::vector<contact::TouchingPoint>&
   series_.append(t, file.bytes());
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

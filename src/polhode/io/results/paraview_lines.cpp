@@ -2,7 +2,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/paraview.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -104,4 +104,4 @@ void LinesWriter::append(double t, const std::vector<BeamReport>& beams,
   series_.append(t, lines.vtp(names_));
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

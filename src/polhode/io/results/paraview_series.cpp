@@ -12,7 +12,7 @@
 #include <polhode/io/results/earlier_results.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::string VtkFile::bytes() const {
          "\n</AppendedData>\n</VTKFile>\n";
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

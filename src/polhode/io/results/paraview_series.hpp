@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Series of files over time, and their list for ParaView: <name>.pvd lists the times,
 /// <name>/<number>.<extension> contains one of them.
@@ -67,4 +67,4 @@ class VtkFile {
   std::string type_, xml_, bytes_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -4,7 +4,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/paraview.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -41,9 +41,9 @@ struct Cells {
   std::vector<std::uint8_t> types;
   std::vector<std::int32_t> owners;
 
-  void add(const Mesh& mesh, std::int64_t first, int owner) {
-    for (const ElementBlock& block : mesh.blocks) {
-      const CellShape& shape = block.shape();
+  void add(const solids::Mesh& mesh, std::int64_t first, int owner) {
+    for (const solids::ElementBlock& block : mesh.blocks) {
+      const solids::CellShape& shape = block.shape();
       const std::vector<std::size_t> order = vtk_order(shape);
       for (std::size_t at = 0; at < block.nodes.size(); at += order.size()) {
         for (const std::size_t k : order) corners.push_back(first + block.nodes[at + k]);
@@ -57,7 +57,7 @@ struct Cells {
 
 }  // namespace
 
-std::vector<std::size_t> vtk_order(const CellShape& shape) {
+std::vector<std::size_t> vtk_order(const solids::CellShape& shape) {
   // VTK sees the triangle 0 1 2 of a wedge from outside, we see it from inside.
   if (shape.name == "wedge6") return {0, 2, 1, 3, 5, 4};
   std::vector<std::size_t> order(static_cast<std::size_t>(shape.size()));
@@ -75,11 +75,11 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
     add_vectors(points, report.position);
     add_vectors(displacements, report.displacement);
     add_vectors(velocities, report.velocity);
-    const NodalFields& nodal = report.nodal;
+    const solids::NodalFields& nodal = report.nodal;
     for (std::size_t i = 0; i < nodal.cauchy.size(); ++i)
       at_nodes.add(nodal.cauchy[i], nodal.von_mises[i], nodal.strain_energy_density[i]);
     for (const ElementSample& e : report.elements) {
-      in_cells.add(e.cauchy, von_mises(e.cauchy), e.strain_energy_density);
+      in_cells.add(e.cauchy, solids::von_mises(e.cauchy), e.strain_energy_density);
       add_vectors(stretches, {e.principal_stretches});
     }
     for (const double error : nodal.stress_error) errors.push_back(static_cast<float>(error));
@@ -106,4 +106,4 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
   series_.append(t, file.bytes());
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -15,7 +15,7 @@
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -52,7 +52,7 @@ std::vector<contact::TouchingPoint> touching_points(const Simulation& simulation
   int side = static_cast<int>(simulation.contact_map().body.size());
   const auto surfaces = static_cast<int>(simulation.contact_map().surfaces.size());
   for (int s = 0; s < surfaces; ++s, side += 2)
-    for (const SurfacePointReport& p : simulation.surface_points(s)) {
+    for (const surface_contact::SurfacePointReport& p : simulation.surface_points(s)) {
       contact::TouchingPoint point;
       point.a = side;
       point.b = side + 1;
@@ -109,7 +109,7 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
                             keep);
   if (output.paraview && !simulation.solids().empty()) {
     std::vector<std::string> names;
-    std::vector<const Mesh*> meshes;
+    std::vector<const solids::Mesh*> meshes;
     for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
       names.push_back(simulation.model().solids[i].name);
       meshes.push_back(&simulation.solids()[i].plan.mesh);
@@ -192,4 +192,4 @@ std::size_t Recorder::frames() const {
   return impl_->results ? impl_->results->frames() : impl_->frames;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

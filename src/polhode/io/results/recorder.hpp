@@ -7,7 +7,7 @@
 #include <polhode/io/results/write_results.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Recorder of a model's `output` into one folder: results.h5, probes/<name>.csv,
 /// paraview/results.pvd and, for deformable solids, paraview/solids.pvd, for beams and cables
@@ -39,4 +39,4 @@ class Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -4,7 +4,7 @@
 // Names in a results file. docs/reference/results_file.md describes it for users; the viewer and
 // other readers depend on these names, so a change needs a new kFormatVersion.
 
-namespace polhode::results {
+namespace polhode::io::results {
 
 inline constexpr int kFormatVersion = 1;
 inline constexpr const char* kFileName = "results.h5";
@@ -47,4 +47,4 @@ inline constexpr const char* kMomentum = "/momentum";
 inline constexpr const char* kSolver = "/solver";
 inline constexpr const char* kProvenance = "/provenance";
 
-}  // namespace polhode::results
+}  // namespace polhode::io::results

@@ -2,7 +2,7 @@
 #include <polhode/io/results/results_plan.hpp>
 #include <polhode/loads/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -231,4 +231,4 @@ FixedData fixed_data(const ResultsLayout& layout) {
   return data;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -10,7 +10,7 @@
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/results/write_results.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Path of a data set in a group.
 [[nodiscard]] inline std::string join(const std::string& group, const std::string& name) {
@@ -67,4 +67,4 @@ struct FixedData {
 };
 [[nodiscard]] FixedData fixed_data(const ResultsLayout& layout);
 
-}  // namespace polhode
+}  // namespace polhode::io

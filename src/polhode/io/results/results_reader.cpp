@@ -17,7 +17,7 @@
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -300,4 +300,4 @@ std::vector<std::string> ResultsReader::groups(const std::string& path) const {
   return list;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Reader of a results file, also of a running, killed or truncated run.
 ///
@@ -52,4 +52,4 @@ class ResultsReader {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

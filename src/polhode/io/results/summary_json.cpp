@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 std::string summary_json(const RunSummary& s, const RunPlace& place) {
   nlohmann::ordered_json phases = nlohmann::ordered_json::object();
@@ -96,4 +96,4 @@ std::string summary_json(const RunSummary& s, const RunPlace& place) {
   return json.dump(2);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

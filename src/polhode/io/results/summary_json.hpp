@@ -6,7 +6,7 @@
 
 #include <polhode/simulation/simulation_details.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// End of a run, as shown to its user, and the location of its results.
 struct RunPlace {
@@ -19,4 +19,4 @@ struct RunPlace {
 /// The figures of a run as one JSON object, see docs/reference/cli.md.
 [[nodiscard]] std::string summary_json(const RunSummary& summary, const RunPlace& place);
 
-}  // namespace polhode
+}  // namespace polhode::io

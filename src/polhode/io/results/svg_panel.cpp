@@ -7,7 +7,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/xml_text.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -148,4 +148,4 @@ std::string SvgPanel::text() const {
          format("</g>\n<rect {} class=\"frame\"/>\n", area);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A line of text. @param style  Class of the style sheet, see svg_page().
 [[nodiscard]] std::string svg_text(double x, double y, const std::string& text,
@@ -47,4 +47,4 @@ class SvgPanel {
 /// Ticks at round numbers within a range, about `count` of them.
 [[nodiscard]] std::vector<double> round_ticks(double low, double high, int count);
 
-}  // namespace polhode
+}  // namespace polhode::io

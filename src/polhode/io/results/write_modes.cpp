@@ -9,7 +9,7 @@
 #include <polhode/io/results/write_modes.hpp>
 #include <polhode/math/quaternion.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -80,7 +80,7 @@ void write_pictures(const ModalAnalysis& analysis, const std::string& folder) {
   std::optional<SolidsWriter> solids;
   if (!model.solids.empty()) {
     std::vector<std::string> names;
-    std::vector<const Mesh*> meshes;
+    std::vector<const solids::Mesh*> meshes;
     for (std::size_t i = 0; i < model.solids.size(); ++i) {
       names.push_back(model.solids[i].name);
       meshes.push_back(&simulation.solids()[i].plan.mesh);
@@ -163,4 +163,4 @@ void write_modes(const ModalAnalysis& analysis, const std::string& folder,
   if (model.output.paraview) write_pictures(analysis, folder);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

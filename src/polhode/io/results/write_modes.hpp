@@ -6,7 +6,7 @@
 #include <polhode/io/results/write_results.hpp>
 #include <polhode/simulation/modal.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Writes frequencies and shapes into a folder: modes.h5, see docs/reference/results_file.md, and,
 /// if the model's output requests ParaView, paraview/modes.pvd and modes_solids.pvd with one
@@ -16,4 +16,4 @@ namespace polhode {
 void write_modes(const ModalAnalysis& analysis, const std::string& folder,
                  const Provenance& provenance);
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,7 +6,7 @@
 #include <polhode/io/results/results_plan.hpp>
 #include <polhode/loads/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -153,4 +153,4 @@ void ResultsFile::append(const ResultsFrame& frame) {
   file_.append(numbers_);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

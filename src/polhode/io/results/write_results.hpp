@@ -10,7 +10,7 @@
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/solid_report.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Provenance of results, stored with them.
 struct Provenance {
@@ -35,8 +35,8 @@ struct ResultsLayout {
   };
   struct SolidEntry {
     std::string name;
-    const Mesh* mesh = nullptr;   ///< Must outlive the file.
-    std::vector<Vec3> reference;  ///< Nodes at the start, world [m].
+    const solids::Mesh* mesh = nullptr;  ///< Must outlive the file.
+    std::vector<Vec3> reference;         ///< Nodes at the start, world [m].
     std::vector<std::string> interfaces;
   };
   struct BeamEntry {
@@ -108,4 +108,4 @@ class ResultsFile {
   std::vector<double> numbers_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

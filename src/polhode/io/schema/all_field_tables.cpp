@@ -2,7 +2,7 @@
 // Every table of the model file, in the order of the reference page.
 #include <polhode/io/schema/field_table.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 std::vector<const FieldTable*> all_field_tables() {
   std::vector<const FieldTable*> tables = {&model_fields(),
@@ -66,4 +66,4 @@ std::vector<const FieldTable*> all_field_tables() {
   return tables;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

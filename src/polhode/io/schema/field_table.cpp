@@ -6,7 +6,7 @@
 
 #include <polhode/geometry/shapes.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -322,9 +322,10 @@ const FieldTable& shape_fields() {
                  "others give its position and orientation. Cylinder, capsule, cone and tube lie "
                  "along z; all are centred at their centroid.",
                  {}};
-    for (const ShapeKind& kind : shape_kinds()) {
+    for (const geometry::ShapeKind& kind : geometry::shape_kinds()) {
       std::string sizes;
-      for (const ShapeSize& size : kind.sizes) sizes += (sizes.empty() ? "[" : ", ") + size.name;
+      for (const geometry::ShapeSize& size : kind.sizes)
+        sizes += (sizes.empty() ? "[" : ", ") + size.name;
       t.fields.push_back({.name = kind.name,
                           .kind = kNumbers,
                           .dimension = kLength,
@@ -433,4 +434,4 @@ const FieldTable& law_table_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

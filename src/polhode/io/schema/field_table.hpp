@@ -10,7 +10,7 @@
 #include <polhode/io/schema/spec_member.hpp>
 #include <polhode/io/text/units.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Kinds of values in a model file.
 enum class FieldKind : unsigned char {
@@ -186,4 +186,4 @@ const FieldTable& distance_limit_fields();
 /// Every table above, in the order of the reference page.
 std::vector<const FieldTable*> all_field_tables();
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -2,7 +2,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -310,4 +310,4 @@ const FieldTable& probe_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -2,7 +2,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/beam_spec.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -360,4 +360,4 @@ const FieldTable& cable_contact_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

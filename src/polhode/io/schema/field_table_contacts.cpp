@@ -3,7 +3,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/contact_spec.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -381,4 +381,4 @@ const FieldTable& height_field_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -2,7 +2,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/controller_spec.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -89,4 +89,4 @@ const FieldTable& controlled_value_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

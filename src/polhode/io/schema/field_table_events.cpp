@@ -2,7 +2,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/event_spec.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -99,4 +99,4 @@ const FieldTable& strength_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -2,7 +2,7 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -190,4 +190,4 @@ const FieldTable& enforcement_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -8,7 +8,7 @@
 #include <polhode/loads/registry.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -323,7 +323,7 @@ const Field kKeeps{
     .standard = "momentum",
     .choices = {"momentum", "work"}};
 
-KindTable solid_load_table(const SolidLoadKind& kind) {
+KindTable solid_load_table(const solids::SolidLoadKind& kind) {
   KindTable result{kind.name, {"load " + kind.name, sentence(kind.meaning), {}}};
   std::vector<Field>& fields = result.table.fields;
   const auto add_function = [&](const std::optional<TimeParameter>& p, FieldKind of) {
@@ -335,8 +335,8 @@ KindTable solid_load_table(const SolidLoadKind& kind) {
                         .required = true});
   };
   fields = {type_field("load", kind.name), kLoadSolid};
-  if (kind.place == SolidLoadPlace::faces) fields.push_back(kLoadFaces);
-  if (kind.place == SolidLoadPlace::nodes) fields.push_back(kLoadNodes);
+  if (kind.place == solids::SolidLoadPlace::faces) fields.push_back(kLoadFaces);
+  if (kind.place == solids::SolidLoadPlace::nodes) fields.push_back(kLoadNodes);
   add_function(kind.value, kTimeNumber);
   add_function(kind.vector, kTimeVector);
   if (kind.can_follow) fields.insert(fields.end(), {kFollower, kKeeps});
@@ -359,10 +359,11 @@ const std::vector<KindTable>& load_tables() {
   static const std::vector<KindTable> tables = [] {
     std::vector<KindTable> list;
     for (const LoadKind& kind : load_kinds()) list.push_back(load_table(kind));
-    for (const SolidLoadKind& kind : solid_load_kinds()) list.push_back(solid_load_table(kind));
+    for (const solids::SolidLoadKind& kind : solids::solid_load_kinds())
+      list.push_back(solid_load_table(kind));
     return list;
   }();
   return tables;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -7,7 +7,7 @@
 #include <polhode/model/material_spec.hpp>
 #include <polhode/solids/materials/registry.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -31,7 +31,7 @@ Range range_of(const Parameter& p) {
 }
 
 /// Whether a parameter is required; one of an alternative is not.
-bool is_required(const MaterialKind& kind, const Parameter& p) {
+bool is_required(const solids::MaterialKind& kind, const Parameter& p) {
   if (p.standard) return false;
   for (const auto& set : kind.alternatives)
     for (const std::string& name : set)
@@ -39,7 +39,7 @@ bool is_required(const MaterialKind& kind, const Parameter& p) {
   return true;
 }
 
-std::vector<Field> parameter_fields(const MaterialKind& kind) {
+std::vector<Field> parameter_fields(const solids::MaterialKind& kind) {
   std::vector<Field> fields;
   for (const Parameter& p : kind.parameters) {
     const UnitReading unit = read_unit(p.unit);
@@ -55,7 +55,7 @@ std::vector<Field> parameter_fields(const MaterialKind& kind) {
 }
 
 /// Description of the alternatives of parameters.
-std::string alternatives_text(const MaterialKind& kind) {
+std::string alternatives_text(const solids::MaterialKind& kind) {
   std::string text;
   for (const auto& set : kind.alternatives) {
     std::string names;
@@ -70,7 +70,7 @@ Field type_field(const std::string& key, const std::string& meaning, const std::
   return {.name = key, .kind = kChoice, .meaning = meaning, .required = true, .choices = {name}};
 }
 
-KindTable material_table(const std::string& name, const MaterialKind& kind) {
+KindTable material_table(const std::string& name, const solids::MaterialKind& kind) {
   KindTable result{name,
                    {"material " + name, sentence(kind.meaning) + alternatives_text(kind), {}}};
   std::vector<Field>& fields = result.table.fields;
@@ -100,7 +100,7 @@ KindTable material_table(const std::string& name, const MaterialKind& kind) {
 const std::vector<KindTable>& material_tables() {
   static const std::vector<KindTable> tables = [] {
     std::vector<KindTable> list;
-    for (const MaterialKind& kind : material_kinds()) {
+    for (const solids::MaterialKind& kind : solids::material_kinds()) {
       list.push_back(material_table(kind.name, kind));
       if (!kind.also.empty()) list.push_back(material_table(kind.also, kind));
     }
@@ -140,7 +140,7 @@ const FieldTable& viscosity_fields() {
 const std::vector<KindTable>& fibre_tables() {
   static const std::vector<KindTable> tables = [] {
     std::vector<KindTable> list;
-    for (const MaterialKind& kind : fibre_kinds()) {
+    for (const solids::MaterialKind& kind : solids::fibre_kinds()) {
       KindTable one{kind.name, {"fibre " + kind.name, sentence(kind.meaning), {}}};
       one.table.meaning += alternatives_text(kind);
       one.table.fields = parameter_fields(kind);
@@ -157,4 +157,4 @@ const std::vector<KindTable>& fibre_tables() {
   return tables;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/schema/field_table.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
@@ -103,4 +103,4 @@ const FieldTable& moving_quaternion_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -3,20 +3,20 @@
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 using namespace dimensions;
 using enum FieldKind;
 
 namespace {
 
-KindTable generator_table(const MeshGenerator& generator) {
+KindTable generator_table(const solids::MeshGenerator& generator) {
   KindTable kind{generator.name, {"mesh " + generator.name, sentence(generator.meaning), {}}};
   if (!generator.sides.empty())
     kind.table.meaning += " Sets of nodes for selections: " + generator.sides + ".";
-  for (const MeshParameter& p : generator.parameters) {
-    const bool length =
-        p.kind == MeshParameter::Kind::kLength || p.kind == MeshParameter::Kind::kPoint;
+  for (const solids::MeshParameter& p : generator.parameters) {
+    const bool length = p.kind == solids::MeshParameter::Kind::kLength ||
+                        p.kind == solids::MeshParameter::Kind::kPoint;
     Field field{.name = p.name,
                 .kind = kNumberList,
                 .dimension = length ? kLength : kNone,
@@ -25,7 +25,7 @@ KindTable generator_table(const MeshGenerator& generator) {
     for (const double x : p.preset)
       field.standard += (field.standard.empty() ? "" : ", ") + format("{:g}", x);
     if (p.preset.size() > 1) field.standard = "[" + field.standard + "]";
-    if (p.kind != MeshParameter::Kind::kPoint) field.range = kPositive;
+    if (p.kind != solids::MeshParameter::Kind::kPoint) field.range = kPositive;
     kind.table.fields.push_back(std::move(field));
   }
   return kind;
@@ -36,8 +36,8 @@ KindTable generator_table(const MeshGenerator& generator) {
 const std::vector<KindTable>& mesh_generator_tables() {
   static const std::vector<KindTable> tables = [] {
     std::vector<KindTable> list;
-    for (const MeshGenerator& generator : mesh_generators())
-      if (cell_shape(generator.elements.front()).dimension == 3)
+    for (const solids::MeshGenerator& generator : solids::mesh_generators())
+      if (solids::cell_shape(generator.elements.front()).dimension == 3)
         list.push_back(generator_table(generator));
     return list;
   }();
@@ -263,4 +263,4 @@ const FieldTable& sphere_fields() {
   return table;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -7,7 +7,7 @@
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/io/schema/field_table.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 using json = nlohmann::ordered_json;
@@ -55,10 +55,10 @@ json choice(const std::vector<std::string>& choices) {
 json indices() { return list_of({{"type", "integer"}, {"minimum", 0}}, 1, 0); }
 
 /// Sizes of a shape: a list in order, a map by name, or a number if there is only one.
-json shape_sizes(const ShapeKind& kind) {
+json shape_sizes(const geometry::ShapeKind& kind) {
   const int count = static_cast<int>(kind.sizes.size());
   json properties = json::object(), names = json::array();
-  for (const ShapeSize& size : kind.sizes) {
+  for (const geometry::ShapeSize& size : kind.sizes) {
     properties[size.name] = reference("number");
     properties[size.name]["description"] = size.meaning;
     names.push_back(size.name);
@@ -74,7 +74,8 @@ json shape_sizes(const ShapeKind& kind) {
 
 json field_schema(const FieldTable& table, const Field& field) {
   using enum FieldKind;
-  if (const ShapeKind* shape = &table == &shape_fields() ? find_shape_kind(field.name) : nullptr)
+  if (const geometry::ShapeKind* shape =
+          &table == &shape_fields() ? geometry::find_shape_kind(field.name) : nullptr)
     return shape_sizes(*shape);
   switch (field.kind) {
     case kNumber: {
@@ -265,4 +266,4 @@ std::string json_schema() {
   return schema.dump(2) + "\n";
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace polhode {
+namespace polhode::io {
 
 /// JSON Schema (draft 2020-12) of the model file, for editors; made from the field tables.
 [[nodiscard]] std::string json_schema();
@@ -11,4 +11,4 @@ namespace polhode {
 /// Reference page of the model file in Markdown; made from the field tables.
 [[nodiscard]] std::string reference_markdown();
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,7 +6,7 @@
 #include <polhode/io/schema/schema.hpp>
 #include <polhode/io/text/expression.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 /// Short description of a value's form.
@@ -165,13 +165,13 @@ std::string reference_markdown() {
   for (const FieldTable* table : all_field_tables()) page += table_page(*table);
   page += "## sizes of shapes\n\nFull lengths, in this order or by name.\n\n";
   page += "| shape | sizes |\n| --- | --- |\n";
-  for (const ShapeKind& kind : shape_kinds()) {
+  for (const geometry::ShapeKind& kind : geometry::shape_kinds()) {
     std::string sizes;
-    for (const ShapeSize& size : kind.sizes)
+    for (const geometry::ShapeSize& size : kind.sizes)
       sizes += (sizes.empty() ? "" : "; ") + format("`{}`: {}", size.name, size.meaning);
     page += format("| `{}` | {} |\n", kind.name, cell(sizes));
   }
   return page;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -14,7 +14,7 @@
 #include <polhode/core/time_function.hpp>
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Reference to a member of any enumeration. A value is the number of its word among the choices of
 /// the field, which are in the order of the enumeration.
@@ -92,4 +92,4 @@ class SpecMember {
   std::function<SpecValue(void*)> locate_{};
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

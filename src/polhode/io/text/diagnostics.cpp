@@ -8,7 +8,7 @@
 
 #include <polhode/core/format.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 constexpr std::size_t kMaxDiagnostics = 200;
@@ -172,4 +172,4 @@ void Diagnostics::throw_if_any() {
   throw ModelErrors(std::move(list_));
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -9,7 +9,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/io/text/model_errors.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Text of a model file, by lines, for excerpts.
 class SourceText {
@@ -59,4 +59,4 @@ class Diagnostics {
   std::vector<std::shared_ptr<const SourceText>> of_parts_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

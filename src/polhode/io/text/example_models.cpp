@@ -9,7 +9,7 @@
 #include <polhode/core/types.hpp>
 #include <polhode/io/text/diagnostics.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -201,4 +201,4 @@ std::string generate_model(const ModelGenerator& generator, const Values& values
   return generator.text(all);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

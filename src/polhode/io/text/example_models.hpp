@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A parameter of a generator of models.
 struct GeneratorParameter {
@@ -30,4 +30,4 @@ struct ModelGenerator {
 [[nodiscard]] std::string generate_model(const ModelGenerator& generator,
                                          const std::map<std::string, std::string>& values);
 
-}  // namespace polhode
+}  // namespace polhode::io

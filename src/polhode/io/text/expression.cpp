@@ -6,7 +6,7 @@
 #include <polhode/core/time_jet.hpp>
 #include <polhode/io/text/expression_ops.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 template <class Number>
 Number Expression::evaluate(const Number& t) const {
@@ -205,4 +205,4 @@ std::vector<std::string> reserved_names() {
   return names;
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

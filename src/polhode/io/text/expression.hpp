@@ -12,7 +12,7 @@
 #include <polhode/io/text/units.hpp>
 #include <polhode/model/model.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A step of an expression's program.
 enum class ExpressionOp : unsigned char;
@@ -104,4 +104,4 @@ class Expression {
 /// Reserved names: t, pi and the functions.
 [[nodiscard]] std::vector<std::string> reserved_names();
 
-}  // namespace polhode
+}  // namespace polhode::io

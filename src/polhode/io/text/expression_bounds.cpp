@@ -9,7 +9,7 @@
 #include <polhode/io/text/expression_ops.hpp>
 #include <polhode/math/interval.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -396,4 +396,4 @@ TimeBounds Expression::bounds(double from, double to) const {
   return {f.v.size(), f.e.size()};
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

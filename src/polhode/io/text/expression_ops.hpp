@@ -5,7 +5,7 @@
 
 #include <polhode/io/text/expression.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Operations of an expression's program on the stack of values.
 enum class ExpressionOp : unsigned char {
@@ -126,4 +126,4 @@ inline constexpr std::array kExpressionFunctions = {
 /// Largest size of the stack; the parser rejects expressions that need more.
 inline constexpr int kStackSize = 128;
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -9,7 +9,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/io/text/expression_ops.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 namespace {
 
@@ -497,4 +497,4 @@ std::shared_ptr<const Expression> Expression::parse(std::string_view text,
   return ExpressionParser(text, variables, units, variable, in_units).parse(fault);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

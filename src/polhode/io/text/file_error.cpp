@@ -13,7 +13,7 @@
 
 #include <polhode/core/format.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 FileError::FileError(std::string_view file, std::string_view what, std::string_view hint)
     : std::runtime_error(format("{}: {}. {}.", file, what, hint)) {}
@@ -74,4 +74,4 @@ void make_folder(const std::string& path) {
     throw FileError(path, format("cannot be made ({})", error.message()), "Name another folder");
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Error of reading or writing a file: full disk, missing folder, no permission.
 class FileError : public std::runtime_error {
@@ -28,4 +28,4 @@ void write_file_atomically(const std::string& path, std::string_view bytes, bool
 /// Creates a folder and its parents. @throws FileError
 void make_folder(const std::string& path);
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -7,7 +7,7 @@
 
 #include <polhode/core/source_location.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// One error of a model file.
 struct Diagnostic {
@@ -35,4 +35,4 @@ class ModelErrors : public std::invalid_argument {
   std::vector<Diagnostic> diagnostics_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -11,7 +11,7 @@
 
 #include <polhode/core/format.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 constexpr const char* kNoAliases = "aliases (*name) are not allowed";
@@ -409,4 +409,4 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
   *node = std::move(replacement);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

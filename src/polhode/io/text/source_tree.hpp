@@ -10,7 +10,7 @@
 
 #include <polhode/io/text/diagnostics.hpp>
 
-namespace polhode {
+namespace polhode::io {
 
 /// A value of a model file with its position: text, list or map.
 struct SourceNode {
@@ -75,4 +75,4 @@ class SourceTree {
   SourceNode root_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -11,7 +11,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/diagnostics.hpp>
 
-namespace polhode {
+namespace polhode::io {
 namespace {
 
 using namespace dimensions;
@@ -305,4 +305,4 @@ double UnitSystem::factor(const Dimension& d) const {
   return angle == 1.0 ? result : result * std::pow(angle, d.angle);
 }
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace polhode {
+namespace polhode::io {
 
 /// Exponents of the base dimensions. The angle is tracked leniently: as an angle is 1 (arc = angle
 /// × radius) it may be left out or added.
@@ -80,4 +80,4 @@ struct UnitSystem {
   [[nodiscard]] double factor_without_angle(const Dimension& dimension) const;
 };
 
-}  // namespace polhode
+}  // namespace polhode::io

@@ -6,7 +6,7 @@
 #include <polhode/solids/elements/condensation.hpp>
 #include <polhode/solids/elements/point_kernel.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Numbers of the nodes of a block, relative to `base` (packs) if there is one.
 template <class P, int kNodes>
@@ -328,4 +328,4 @@ inline void scatter_columns(const int* slots, int first, int present, int b, con
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -6,7 +6,7 @@
 #include <polhode/solids/elements/kernels.hpp>
 #include <polhode/solids/simd/pack.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Inverse by Gauss-Jordan elimination in place, without pivoting: the matrices are nearly
 /// symmetric, and positive definite as long as the element is stable.
@@ -123,4 +123,4 @@ struct Condensation {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

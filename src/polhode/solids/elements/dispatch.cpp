@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/elements/kernels.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 extern const ElementKernels kElementsBaseline;
 #if defined(__x86_64__)
@@ -34,4 +34,4 @@ const ElementKernels& element_kernels(const std::string& isa) {
                    format("Use automatic, or one of: {}", names));
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

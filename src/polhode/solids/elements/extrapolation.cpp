@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/solids/elements/extrapolation.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 namespace {
 
@@ -47,4 +47,4 @@ Extrapolation extrapolation(const ElementKind& kind) {
   return at_nodes * (weighed * at_points).ldlt().solve(weighed);
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -3,7 +3,7 @@
 
 #include <polhode/solids/elements/registry.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Extrapolation from integration points to nodes, n × points: by the least-squares polynomial
 /// (with the weights of the rule), trilinear in hexahedra, linear in tetrahedra, linear in both
@@ -12,4 +12,4 @@ namespace polhode {
 using Extrapolation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 [[nodiscard]] Extrapolation extrapolation(const ElementKind& kind);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -4,7 +4,7 @@
 
 #include <polhode/solids/elements/block_kernel.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 template <class P, int kKind>
 [[gnu::noinline]] void block_residual(const ElementData& data, ElementStep& step,
@@ -246,4 +246,4 @@ struct KernelTable {
                                        kKernelOf<P, 6>, kKernelOf<P, 7>};
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

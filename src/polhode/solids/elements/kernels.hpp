@@ -5,7 +5,7 @@
 
 #include <polhode/solids/materials/kernels.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Data of a group of elements for the kernels. Elements are stored in blocks of the width of a
 /// pack; the last block is padded with its last element. Packs are consecutive.
@@ -114,4 +114,4 @@ struct ElementKernels {
 /// build lacks it.
 [[nodiscard]] const ElementKernels& element_kernels(const std::string& isa);
 
-}  // namespace polhode
+}  // namespace polhode::solids

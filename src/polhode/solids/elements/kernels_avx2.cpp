@@ -3,7 +3,7 @@
 
 #if defined(__x86_64__)
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 constexpr KernelTable<Pack<4>> kTable;
 }
@@ -11,6 +11,6 @@ constexpr KernelTable<Pack<4>> kTable;
 extern const ElementKernels kElementsAvx2;
 const ElementKernels kElementsAvx2 = {"avx2", 4, kTable.kind};
 
-}  // namespace polhode
+}  // namespace polhode::solids
 
 #endif

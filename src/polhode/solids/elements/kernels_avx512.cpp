@@ -3,7 +3,7 @@
 
 #if defined(__x86_64__)
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 constexpr KernelTable<Pack<8>> kTable;
 }
@@ -11,6 +11,6 @@ constexpr KernelTable<Pack<8>> kTable;
 extern const ElementKernels kElementsAvx512;
 const ElementKernels kElementsAvx512 = {"avx512", 8, kTable.kind};
 
-}  // namespace polhode
+}  // namespace polhode::solids
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/solids/elements/kernel_templates.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 constexpr KernelTable<Pack<2>> kTable;
 }
@@ -9,4 +9,4 @@ constexpr KernelTable<Pack<2>> kTable;
 extern const ElementKernels kElementsBaseline;
 const ElementKernels kElementsBaseline = {"baseline", 2, kTable.kind};
 
-}  // namespace polhode
+}  // namespace polhode::solids

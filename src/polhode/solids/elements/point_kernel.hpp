@@ -6,7 +6,7 @@
 #include <polhode/solids/elements/kernels.hpp>
 #include <polhode/solids/materials/strain_pair.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// H = Σ u_r ⊗ G_r, row by row.
 template <class P, int kRows>
@@ -165,4 +165,4 @@ inline P viscous_power(const ElementData& data, const P* rate) {
   return data.viscous_lame * trace * trace + 2.0 * data.viscous_shear * squares;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

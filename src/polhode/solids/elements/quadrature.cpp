@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/elements/quadrature.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 std::vector<std::pair<double, double>> gauss(int points) {
   switch (points) {
@@ -114,4 +114,4 @@ Quadrature face_rule(const std::string& shape) {
                    "Faces are tri3, tri6, quad4, quad8 or quad9");
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

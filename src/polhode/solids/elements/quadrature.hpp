@@ -6,7 +6,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// A point of the reference cell and its weight.
 struct QuadraturePoint {
@@ -28,4 +28,4 @@ using Quadrature = std::vector<QuadraturePoint>;
 /// flat faces.
 [[nodiscard]] Quadrature face_rule(const std::string& shape);
 
-}  // namespace polhode
+}  // namespace polhode::solids

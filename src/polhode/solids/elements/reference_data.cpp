@@ -7,7 +7,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/elements/reference_data.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 Mat3 reference_jacobian(const Mat& shape_gradients, std::span<const int> nodes,
                         std::span<const Vec3> X) {
@@ -118,4 +118,4 @@ void element_mass(const ElementKind& kind, double density, std::span<const int> 
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

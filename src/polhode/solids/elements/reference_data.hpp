@@ -10,7 +10,7 @@
 #include <polhode/core/types.hpp>
 #include <polhode/solids/elements/registry.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Array of numbers aligned to a cache line.
 class AlignedNumbers {
@@ -51,4 +51,4 @@ struct ReferenceData {
 void element_mass(const ElementKind& kind, double density, std::span<const int> nodes,
                   std::span<const Vec3> X, double* M);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -4,7 +4,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/elements/registry.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 std::vector<ElementKind> make_kinds() {
@@ -89,4 +89,4 @@ const ElementKind& choose_element(std::string_view where, std::string_view wante
   return *found;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

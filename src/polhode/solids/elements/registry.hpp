@@ -9,7 +9,7 @@
 #include <polhode/solids/elements/quadrature.hpp>
 #include <polhode/solids/mesh/shapes.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// A type of solid element in the model file.
 struct ElementKind {
@@ -42,4 +42,4 @@ struct ElementKind {
 [[nodiscard]] const ElementKind& choose_element(std::string_view where, std::string_view wanted,
                                                 std::string_view shape, bool uncoupled);
 
-}  // namespace polhode
+}  // namespace polhode::solids

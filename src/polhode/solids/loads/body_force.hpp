@@ -10,7 +10,7 @@
 #include <polhode/solids/loads/dead_load.hpp>
 #include <polhode/solids/loads/solid_load.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Force per undeformed volume [N/m³] on solid elements.
 /// @param name          Path of the load in the user's model.
@@ -58,4 +58,4 @@ namespace polhode {
           }};
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -11,7 +11,7 @@
 #include <polhode/core/time_function.hpp>
 #include <polhode/system/element_group.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Forces on nodes that do not depend on the positions of the nodes: f_i = B_i v(t), with a
 /// constant matrix for each node. The work at t_{n+αf} over a step is f·u exactly.
@@ -96,4 +96,4 @@ class NodeShares {
   std::map<int, Mat3> sum_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

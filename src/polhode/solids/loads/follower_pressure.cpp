@@ -6,7 +6,7 @@
 #include <polhode/solids/loads/follower_pressure.hpp>
 #include <polhode/solids/mesh/shapes.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 FollowerPressure::FollowerPressure(std::string name, const LoadedFaces& faces,
                                    TimeFunctionPtr pressure, FollowerRule rule)
@@ -104,4 +104,4 @@ ElementGroups make_follower_pressure(const std::string& name, std::span<const Lo
   return groups;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

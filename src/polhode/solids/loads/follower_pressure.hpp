@@ -7,7 +7,7 @@
 #include <polhode/core/time_function.hpp>
 #include <polhode/solids/loads/solid_load.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Follower pressure, always normal to faces of one shape.
 class FollowerPressure final : public ElementGroup {
@@ -62,4 +62,4 @@ class FollowerPressure final : public ElementGroup {
                                                    const TimeFunctionPtr& pressure,
                                                    FollowerRule rule = FollowerRule::kMomentum);
 
-}  // namespace polhode
+}  // namespace polhode::solids

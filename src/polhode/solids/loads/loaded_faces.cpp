@@ -3,7 +3,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/loads/loaded_faces.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 void check_faces(const std::string& name, std::span<const LoadedFaces> faces) {
   std::size_t count = 0;
@@ -20,4 +20,4 @@ void check_faces(const std::string& name, std::span<const LoadedFaces> faces) {
                      "Choose faces on the boundary of the solid");
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

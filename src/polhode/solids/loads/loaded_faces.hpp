@@ -9,7 +9,7 @@
 #include <polhode/solids/elements/reference_data.hpp>
 #include <polhode/solids/mesh/shapes.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Faces of one shape: tri3, tri6, quad4, quad8, quad9. Seen from outside the solid, their corners
 /// are counterclockwise.
@@ -50,4 +50,4 @@ void for_each_face_point(std::span<const LoadedFaces> faces, std::span<const Vec
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -5,7 +5,7 @@
 #include <polhode/solids/loads/dead_load.hpp>
 #include <polhode/solids/loads/solid_load.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Equal forces on all nodes [N]; absent components are zero.
 /// @param name  Path of the load in the user's model.
@@ -33,4 +33,4 @@ namespace polhode {
           }};
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

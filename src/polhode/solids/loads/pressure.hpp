@@ -5,7 +5,7 @@
 #include <polhode/solids/loads/follower_pressure.hpp>
 #include <polhode/solids/loads/solid_load.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Pressure against the outward normals and areas of the undeformed faces [Pa].
 /// @param name  Path of the load in the user's model.
@@ -38,4 +38,4 @@ namespace polhode {
           }};
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 #include <polhode/solids/loads/registry.hpp>
 #include <polhode/solids/loads/traction.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 const std::vector<SolidLoadKind>& solid_load_kinds() {
   static const std::vector<SolidLoadKind> kinds{
@@ -30,4 +30,4 @@ const SolidLoadKind& solid_load_kind(std::string_view where, std::string_view na
                    format("Use one of: {}", name_list(names)));
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

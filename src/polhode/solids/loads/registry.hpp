@@ -6,7 +6,7 @@
 
 #include <polhode/solids/loads/solid_load.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Every type of load on solids; the order is that of the documentation.
 [[nodiscard]] const std::vector<SolidLoadKind>& solid_load_kinds();
@@ -16,4 +16,4 @@ namespace polhode {
 /// @throws InputError that lists the names if it is unknown.
 [[nodiscard]] const SolidLoadKind& solid_load_kind(std::string_view where, std::string_view name);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -12,7 +12,7 @@
 #include <polhode/system/element_group.hpp>
 #include <polhode/system/parameter.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 // Loads on solids are ElementGroups. Values are taken at t_{n+αf}, times StepContext::load_factor.
 // Loads with a constant value that are no follower loads have a potential, which counts as stored;
@@ -78,4 +78,4 @@ struct SolidLoadKind {
   return groups;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

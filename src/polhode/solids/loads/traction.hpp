@@ -4,7 +4,7 @@
 #include <polhode/solids/loads/dead_load.hpp>
 #include <polhode/solids/loads/solid_load.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Force per undeformed area, fixed in the world [Pa].
 /// @param name  Path of the load in the user's model.
@@ -32,4 +32,4 @@ namespace polhode {
           }};
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

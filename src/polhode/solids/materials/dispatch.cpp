@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/materials/kernels.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 extern const MaterialKernels kMaterialsBaseline;
 #if defined(__x86_64__)
@@ -34,4 +34,4 @@ const MaterialKernels& material_kernels(const std::string& isa) {
                    format("Use automatic, or one of: {}", names));
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -6,7 +6,7 @@
 #include <polhode/solids/materials/material_kind.hpp>
 #include <polhode/solids/simd/math.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Discrete stress of a fibre over a step.
 template <class P>
@@ -52,4 +52,4 @@ struct ExponentialFibre {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

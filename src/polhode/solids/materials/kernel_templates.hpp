@@ -5,7 +5,7 @@
 #include <polhode/solids/materials/kernels.hpp>
 #include <polhode/solids/materials/laws.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 template <class P>
 inline const P* packs(const double* p) {
@@ -160,4 +160,4 @@ constexpr auto fibre_table(LawList<Law...>) {
   return Table{{FibreKernel{fibre_add_stress<P, Law>, fibre_add_energy<P, Law>}...}};
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

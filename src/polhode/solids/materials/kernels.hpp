@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Functions of a law for several elements in SIMD lanes. Numbers are packs of that many doubles,
 /// aligned to their size; symmetric tensors are six packs (11 22 33 12 23 31), D is 36 row by row
@@ -47,4 +47,4 @@ struct MaterialKernels {
 /// @throws InputError if the machine or the build lacks it.
 [[nodiscard]] const MaterialKernels& material_kernels(const std::string& isa);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -3,7 +3,7 @@
 
 #if defined(__x86_64__)
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 using P = Pack<4>;
@@ -16,6 +16,6 @@ extern const MaterialKernels kMaterialsAvx2;
 const MaterialKernels kMaterialsAvx2 = {
     "avx2", 4, kLaws.entry, kFibres.entry, {volume_pressure<P>, volume_energy<P>}};
 
-}  // namespace polhode
+}  // namespace polhode::solids
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/solids/materials/kernel_templates.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 using P = Pack<2>;
@@ -14,4 +14,4 @@ extern const MaterialKernels kMaterialsBaseline;
 const MaterialKernels kMaterialsBaseline = {
     "baseline", 2, kLaws.entry, kFibres.entry, {volume_pressure<P>, volume_energy<P>}};
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -9,7 +9,7 @@
 #include <polhode/solids/materials/st_venant_kirchhoff.hpp>
 #include <polhode/solids/materials/toe_fibre.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 template <class... Law>
 struct LawList {};
@@ -18,4 +18,4 @@ struct LawList {};
 using MaterialLaws = LawList<StVenantKirchhoff, NeoHookean, MooneyRivlin, MooneyRivlinUncoupled>;
 using FibreLaws = LawList<ExponentialFibre, ToeFibre>;
 
-}  // namespace polhode
+}  // namespace polhode::solids

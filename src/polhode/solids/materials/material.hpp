@@ -11,7 +11,7 @@
 #include <polhode/core/types.hpp>
 #include <polhode/solids/materials/material_kind.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Description of a material by the user.
 struct MaterialDescription {
@@ -70,4 +70,4 @@ struct MaterialPoint {
 [[nodiscard]] double strain_energy(const Material& material, const Vec6& E,
                                    const Vec3& A = Vec3::UnitX(), bool whole = true);
 
-}  // namespace polhode
+}  // namespace polhode::solids

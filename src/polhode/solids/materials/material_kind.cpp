@@ -8,7 +8,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/materials/material_kind.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 constexpr double kPositive = std::numeric_limits<double>::min();
@@ -134,4 +134,4 @@ LinearModuli isotropic_moduli(const ParameterValues& values) {
   return {lame, shear};
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 
 #include <polhode/system/parameter.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Parameters by name, SI.
 using ParameterValues = std::map<std::string, double>;
@@ -43,4 +43,4 @@ struct LinearModuli {
 [[nodiscard]] ParameterValues checked_values(std::string_view where, const MaterialKind& kind,
                                              const ParameterValues& given);
 
-}  // namespace polhode
+}  // namespace polhode::solids

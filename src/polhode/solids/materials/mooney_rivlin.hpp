@@ -8,7 +8,7 @@
 #include <polhode/solids/materials/material_kind.hpp>
 #include <polhode/solids/materials/strain_pair.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Compressible Mooney-Rivlin solid:
 ///
@@ -71,4 +71,4 @@ struct MooneyRivlin {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

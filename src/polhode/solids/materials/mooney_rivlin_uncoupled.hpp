@@ -8,7 +8,7 @@
 #include <polhode/solids/materials/material_kind.hpp>
 #include <polhode/solids/materials/strain_pair.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Nearly incompressible Mooney-Rivlin solid with uncoupled volumetric and isochoric parts:
 ///
@@ -84,4 +84,4 @@ struct MooneyRivlinUncoupled {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -4,7 +4,7 @@
 #include <polhode/solids/materials/material_kind.hpp>
 #include <polhode/solids/materials/strain_pair.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Compressible neo-Hookean solid:
 ///
@@ -44,4 +44,4 @@ struct NeoHookean {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

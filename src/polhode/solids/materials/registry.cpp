@@ -9,7 +9,7 @@
 #include <polhode/solids/materials/laws.hpp>
 #include <polhode/solids/materials/registry.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 template <class... Law>
@@ -178,4 +178,4 @@ double strain_energy(const Material& material, const Vec6& E, const Vec3& A, boo
   return W.value[0];
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -7,7 +7,7 @@
 
 #include <polhode/solids/materials/material.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Every type of material, in the order of the documentation.
 [[nodiscard]] const std::vector<MaterialKind>& material_kinds();
@@ -24,4 +24,4 @@ namespace polhode {
 [[nodiscard]] std::unique_ptr<const Material> make_material(std::string_view where,
                                                             const MaterialDescription& description);
 
-}  // namespace polhode
+}  // namespace polhode::solids

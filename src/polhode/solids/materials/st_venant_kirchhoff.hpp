@@ -4,7 +4,7 @@
 #include <polhode/solids/materials/material_kind.hpp>
 #include <polhode/solids/materials/strain_pair.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Hooke's law between Green's strain and the second Piola-Kirchhoff stress:
 ///
@@ -44,4 +44,4 @@ struct StVenantKirchhoff {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

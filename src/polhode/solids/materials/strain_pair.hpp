@@ -5,7 +5,7 @@
 
 #include <polhode/solids/simd/math.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 // Symmetric tensors are six numbers in the order 11 22 33 12 23 31.
 
@@ -143,4 +143,4 @@ inline void write_stress(const StrainPair<P>& pair, const Coefficients<P>& a, P*
   add_cross(P(4.0 * a.q), pair.A, D);
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

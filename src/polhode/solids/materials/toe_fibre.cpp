@@ -4,7 +4,7 @@
 
 #include <polhode/solids/materials/toe_fibre.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 // Gauss-Legendre on [0, 1], 8 points: exact to degree 15.
@@ -99,4 +99,4 @@ void ToeFibre::difference_of(double y_0, double y_1, double* value, double* deri
   *derivative = std::abs(step) > 1e-8 ? (end.first - *value) / step : 0.5 * end.second;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -3,7 +3,7 @@
 
 #include <polhode/solids/materials/exponential_fibre.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Fibre with a toe: an exponential start, followed by an optional straight line.
 ///
@@ -44,4 +44,4 @@ struct ToeFibre {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -7,7 +7,7 @@
 #include <polhode/solids/mesh/check_mesh.hpp>
 #include <polhode/solids/mesh/coincident.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 using FaultKind = MeshFault::Kind;
@@ -206,4 +206,4 @@ int merge_duplicate_nodes(Mesh& mesh, double distance) {
   return gone;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

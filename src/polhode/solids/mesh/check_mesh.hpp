@@ -6,7 +6,7 @@
 
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// An error of a mesh.
 struct MeshFault {
@@ -32,4 +32,4 @@ std::vector<std::string> check_mesh(const Mesh& mesh);
 /// @throws InputError if an element would have the same node twice.
 int merge_duplicate_nodes(Mesh& mesh, double distance = 0.0);
 
-}  // namespace polhode
+}  // namespace polhode::solids

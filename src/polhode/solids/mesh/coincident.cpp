@@ -7,7 +7,7 @@
 
 #include <polhode/solids/mesh/coincident.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
@@ -70,4 +70,4 @@ std::vector<int> first_coincident(const std::vector<Vec3>& points, double distan
   return first;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -3,7 +3,7 @@
 
 #include <polhode/solids/mesh/face_index.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 std::size_t FaceIndex::Hash::operator()(const Key& key) const {
   std::size_t hash = 0;
@@ -68,4 +68,4 @@ Surface boundary(const Mesh& mesh) {
   return surface;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

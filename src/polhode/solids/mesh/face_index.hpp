@@ -8,7 +8,7 @@
 
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Faces of the solid elements of a mesh, found by their corners in any order.
 class FaceIndex {
@@ -40,4 +40,4 @@ class FaceIndex {
 /// Nodes of a face of an element.
 [[nodiscard]] std::vector<int> face_nodes(const Mesh& mesh, int element, int face);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -9,7 +9,7 @@
 #include <polhode/solids/mesh/generators.hpp>
 #include <polhode/solids/mesh/lattice.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 4.0;
@@ -361,4 +361,4 @@ Mesh make_mesh(std::string_view where, std::string_view generator, const MeshPar
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

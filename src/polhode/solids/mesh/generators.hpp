@@ -8,7 +8,7 @@
 
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// One parameter of a generator, a list of numbers.
 struct MeshParameter {
@@ -59,4 +59,4 @@ struct MeshGenerator {
                                const std::map<std::string, std::vector<int>>& sets,
                                std::string_view type = {});
 
-}  // namespace polhode
+}  // namespace polhode::solids

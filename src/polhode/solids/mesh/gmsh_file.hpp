@@ -12,7 +12,7 @@
 #include <polhode/solids/mesh/mesh_builder.hpp>
 #include <polhode/solids/mesh/mesh_cursor.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// A Gmsh file while it is read. Numbers are text or binary, as the file's header says.
 struct GmshFile {
@@ -71,4 +71,4 @@ void read_gmsh4_entities(GmshFile& file, GmshEntities& entities, bool partitione
 void read_gmsh4_nodes(GmshFile& file);
 void read_gmsh4_elements(GmshFile& file, const GmshEntities& entities);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 /// Default type of cells with this number of nodes.
@@ -73,4 +73,4 @@ Mesh inline_mesh(std::string_view where, const std::vector<Vec3>& nodes,
   return mesh;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

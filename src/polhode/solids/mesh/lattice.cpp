@@ -8,7 +8,7 @@
 #include <polhode/solids/mesh/coincident.hpp>
 #include <polhode/solids/mesh/lattice.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 /// Nodes of one hexahedron of 27 nodes.
@@ -187,4 +187,4 @@ Mesh lattice_mesh(std::string_view name, const std::vector<Patch>& patches, std:
   return mesh;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -9,7 +9,7 @@
 
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// A curved box of cells: an image of the unit cube, divided into cells along each coordinate.
 struct Patch {
@@ -40,4 +40,4 @@ struct NamedSide {
 [[nodiscard]] Mesh lattice_mesh(std::string_view name, const std::vector<Patch>& patches,
                                 std::string_view type, const std::vector<NamedSide>& sides);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 /// New numbers of the kept elements; −1 for the others.
@@ -224,4 +224,4 @@ double element_volume(const Mesh& mesh, int element) {
   return volume;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -11,7 +11,7 @@
 #include <polhode/core/types.hpp>
 #include <polhode/solids/mesh/shapes.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Cells of one shape.
 struct ElementBlock {
@@ -95,4 +95,4 @@ struct Extent {
 /// Volume of a solid element by its own shape functions [m³].
 [[nodiscard]] double element_volume(const Mesh& mesh, int element);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -7,7 +7,7 @@
 #include <polhode/solids/mesh/face_index.hpp>
 #include <polhode/solids/mesh/mesh_builder.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 void make_unique(std::vector<int>& set) {
@@ -251,4 +251,4 @@ Mesh MeshBuilder::finish() {
   return mesh;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -12,7 +12,7 @@
 #include <polhode/solids/mesh/mesh.hpp>
 #include <polhode/solids/mesh/mesh_cursor.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 class FaceIndex;
 
@@ -96,4 +96,4 @@ class MeshBuilder {
   std::unordered_multimap<std::size_t, int> known_;  ///< Hash of nodes → position in cell_of_.
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/mesh_cursor.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n\v\f";
@@ -141,4 +141,4 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -11,7 +11,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// A position in the bytes of a mesh file, which may mix text and binary numbers.
 ///
@@ -89,4 +89,4 @@ inline constexpr const char* kExportMeshAgain =
 /// Largest accepted coordinate [file's unit].
 inline constexpr double kLargestCoordinate = 1e30;
 
-}  // namespace polhode
+}  // namespace polhode::solids

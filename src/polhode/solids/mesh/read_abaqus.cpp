@@ -13,7 +13,7 @@
 #include <polhode/solids/mesh/mesh_builder.hpp>
 #include <polhode/solids/mesh/read_mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 /// Shape of an Abaqus element, by its name including the number of its nodes.
@@ -455,4 +455,4 @@ Mesh parse_abaqus(const std::string& name, std::string_view bytes) {
   return AbaqusReader(name, bytes).read();
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 #include <polhode/solids/mesh/gmsh_file.hpp>
 #include <polhode/solids/mesh/read_mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 /// A type of Gmsh element: our shape, and Gmsh's position of our node i.
@@ -184,4 +184,4 @@ Mesh parse_gmsh(const std::string& name, std::string_view bytes) {
   return mesh.finish();
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/mesh/gmsh_file.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 /// Adds a cell to the set of its physical group, else of its entity.
@@ -82,4 +82,4 @@ void read_gmsh2_elements(GmshFile& file) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/solids/mesh/gmsh_file.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 int read_dimension(GmshFile& file) {
@@ -133,4 +133,4 @@ void read_gmsh4_elements(GmshFile& file, const GmshEntities& entities) {
   check_total(file, found, counts.things, "elements");
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

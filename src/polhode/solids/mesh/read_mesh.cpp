@@ -12,7 +12,7 @@
 #include <polhode/solids/mesh/mesh_cursor.hpp>
 #include <polhode/solids/mesh/read_mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 Mesh parse_mesh(const std::string& name, std::string_view bytes, double factor) {
   if (!(factor > 0.0 && std::isfinite(factor)))
@@ -56,4 +56,4 @@ Mesh read_mesh(const std::string& path, double factor) {
   return parse_mesh(path, bytes, factor);
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -6,7 +6,7 @@
 
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Reads a mesh; the format follows from the file name: .msh (Gmsh 2.2 and 4.1, text and binary),
 /// .vtu (VTK, all encodings, zlib), .inp (Abaqus: nodes, elements, sets and surfaces).
@@ -30,4 +30,4 @@ namespace polhode {
 [[nodiscard]] Mesh parse_vtu(const std::string& name, std::string_view bytes);
 [[nodiscard]] Mesh parse_abaqus(const std::string& name, std::string_view bytes);
 
-}  // namespace polhode
+}  // namespace polhode::solids

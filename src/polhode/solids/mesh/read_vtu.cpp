@@ -12,7 +12,7 @@
 #include <polhode/solids/mesh/read_mesh.hpp>
 #include <polhode/solids/mesh/vtk_array.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 constexpr std::int64_t kMaxThings = 2'000'000'000;
@@ -291,4 +291,4 @@ Mesh parse_vtu(const std::string& name, std::string_view bytes) {
   return VtuReader(name, bytes).read();
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -9,7 +9,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/selection.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 using Kind = Selection::Kind;
@@ -214,4 +214,4 @@ Surface select_faces(std::string_view where, const Mesh& mesh,
   return result;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

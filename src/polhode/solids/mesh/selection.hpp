@@ -7,7 +7,7 @@
 
 #include <polhode/solids/mesh/mesh.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Selection of nodes or faces of a mesh, in the mesh's own coordinates [m].
 struct Selection {
@@ -42,4 +42,4 @@ struct Selection {
 [[nodiscard]] Surface select_faces(std::string_view where, const Mesh& mesh,
                                    const std::vector<Selection>& selections);
 
-}  // namespace polhode
+}  // namespace polhode::solids

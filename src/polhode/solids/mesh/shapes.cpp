@@ -11,7 +11,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/shapes.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 using Corners = std::vector<std::vector<int>>;
@@ -239,4 +239,4 @@ double least_jacobian(const CellShape& shape, const Vec3* X) {
   return least;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 
 #include <polhode/core/types.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// One edge: its corners, and the node in its middle (−1 if it has none).
 struct CellEdge {
@@ -71,4 +71,4 @@ struct CellShape {
 /// positive: the cell is inverted or collapsed somewhere.
 [[nodiscard]] double least_jacobian(const CellShape& shape, const Vec3* X);
 
-}  // namespace polhode
+}  // namespace polhode::solids

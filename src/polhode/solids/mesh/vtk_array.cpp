@@ -14,7 +14,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/vtk_array.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 struct NumberType {
@@ -259,4 +259,4 @@ VtkArray read_vtk_array(MeshCursor& in, XmlTags& xml, const XmlTag& tag,
   return array;
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -8,7 +8,7 @@
 
 #include <polhode/solids/mesh/xml_tags.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Encoding of numbers in a VTK file.
 struct VtkEncoding {
@@ -36,4 +36,4 @@ struct VtkArray {
 [[nodiscard]] VtkArray read_vtk_array(MeshCursor& in, XmlTags& xml, const XmlTag& tag,
                                       const VtkEncoding& encoding, std::size_t count);
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -6,7 +6,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/xml_tags.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 namespace {
 
 constexpr std::string_view kXmlBlanks = " \t\r\n";
@@ -128,4 +128,4 @@ void XmlTags::skip(const XmlTag& tag) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids

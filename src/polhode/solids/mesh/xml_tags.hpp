@@ -7,7 +7,7 @@
 
 #include <polhode/solids/mesh/mesh_cursor.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// One tag of an XML file.
 struct XmlTag {
@@ -43,4 +43,4 @@ class XmlTags {
   MeshCursor& in_;
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

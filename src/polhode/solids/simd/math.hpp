@@ -5,7 +5,7 @@
 
 #include <polhode/solids/simd/pack.hpp>
 
-namespace polhode {
+namespace polhode::solids {
 
 /// Σ_{k≥1} z²ᵏ/(2k+1) = atanh(z)/z − 1, for |z| ≤ 0.172.
 template <class P>
@@ -202,4 +202,4 @@ struct PowerDifference {
   }
 };
 
-}  // namespace polhode
+}  // namespace polhode::solids

@@ -4,7 +4,7 @@
 // functions must not be called from the files kernels_*.cpp.
 #pragma once
 
-namespace polhode {
+namespace polhode::solids {
 
 /// W doubles for SIMD arithmetic.
 template <int W>
@@ -65,4 +65,4 @@ template <class P>
   return reinterpret_cast<double*>(p);
 }
 
-}  // namespace polhode
+}  // namespace polhode::solids
