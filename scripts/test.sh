@@ -107,6 +107,9 @@ benchmarks=OFF
 check "release build" configure_and_build release -DPOLHODE_BUILD_BENCHMARKS=$benchmarks &&
   tests "release tests" build/release
 
+# Clang reads what g++ has built: warnings that only one of them has.
+check "clang" python3 tools/check_clang.py build/release --library
+
 # Address and undefined-behaviour sanitizers, on what is fast enough under them; the corpus of the
 # fuzzer (tests/fuzz/run.sh) is read by the unit tests, so it is replayed here.
 if [ "$sanitize" = yes ]; then

@@ -9,9 +9,8 @@
 
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
-#include <polhode/engines/contact_engine.hpp>
-#include <polhode/engines/coupled_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
+#include <polhode/engines/sparse_engine.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/kernels/dispatch.hpp>
@@ -167,10 +166,10 @@ class Scene {
     else if (cg_residual > 0.0)
       engine = std::make_unique<ContactCgEngine>(system, cg_residual);
     else if (!system.nodes().empty())
-      engine = std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum,
-                                               NodeFactor::every_iteration);
+      engine = std::make_unique<SparseEngine>(system, "block_lu", MomentumRate::momentum,
+                                              NodeFactor::every_iteration);
     else
-      engine = std::make_unique<ContactEngine>(system, "block_lu");
+      engine = std::make_unique<SparseEngine>(system, "block_lu");
     single_ = std::make_unique<SingleStep>(system, std::move(engine),
                                            GeneralizedAlpha::from_spectral_radius(1.0),
                                            lane_kernels("automatic"), true);

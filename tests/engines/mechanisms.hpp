@@ -6,7 +6,7 @@
 
 #include <polhode/compile/build_system.hpp>
 #include <polhode/dynamics/momentum_step.hpp>
-#include <polhode/equations/trial.hpp>
+#include <polhode/equations/newton_engine.hpp>
 
 namespace polhode::test {
 

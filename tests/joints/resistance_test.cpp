@@ -108,8 +108,10 @@ TEST_P(EveryResistance, HasTheTangentsOfItsFrictionByMotionAndReaction) {
   for (const State state : {State::sticks, State::slips})
     for (const double rho_inf : {1.0, 0.5, 0.0})
       for (unsigned seed = 1; seed <= 4; ++seed) {
-        auto [joint, m] =
+        auto sampled =
             sample(GetParam(), friction_of(GetParam(), state), seed, context_of(rho_inf));
+        auto& joint = sampled.joint;
+        auto& m = sampled.motion;
         expect_tangents(joint, m);
         m.a_moves = false;
         m.a_n = BodyMotion{};
@@ -134,7 +136,9 @@ void expect_tangents_of_stops(const std::string& type) {
           StepContext context = context_of(rho_inf);
           context.conserving = conserving;
           JointResistance r;
-          auto [joint, m] = sample(type, r, seed, context);
+          auto sampled = sample(type, r, seed, context);
+          auto& joint = sampled.joint;
+          auto& m = sampled.motion;
           const JointCoordinates c =
               m.at_start([&](const PairStep& s) { return joint.coordinates(s); });
           const std::vector<std::string> names = joint.coordinate_names();
@@ -172,8 +176,10 @@ TEST(SlackLink, HasTheTangentsOfItsStops) { expect_tangents_of_stops("slack_link
 TEST_P(EveryResistance, NeverAddsEnergyByFriction) {
   for (const State state : {State::sticks, State::slips})
     for (unsigned seed = 1; seed <= 60; ++seed) {
-      const auto [joint, m] =
+      const auto sampled =
           sample(GetParam(), friction_of(GetParam(), state), seed, context_of(1.0));
+      const auto& joint = sampled.joint;
+      const auto& m = sampled.motion;
       Joint free("j", GetParam(), Participants{0, 1}, JointRecipe{joint.frames(), joint.parts()});
       const double work =
           (wrenches(evaluate(joint, m)) - wrenches(evaluate(free, m))).dot(step_motion(m));

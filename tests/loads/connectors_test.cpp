@@ -68,7 +68,9 @@ void expect_laws(const std::function<void(LoadDescription&)>& change, double sca
     for (const bool conserving : {true, false}) {
       StepContext context = context_of(rho_inf);
       context.conserving = conserving;
-      auto [d, m] = sample(1, context);
+      auto sampled = sample(1, context);
+      auto& d = sampled.d;
+      auto& m = sampled.motion;
       change(d);
       const Item item(d);
       start(item, m);
@@ -271,7 +273,9 @@ TEST(Connectors, GearsDoNoWorkAndHaveTheirTangents) {
   for (const Kind kind : {Kind::centres, Kind::axes})
     for (unsigned seed = 1; seed <= 4; ++seed) {
       for (const double rho_inf : {1.0, 0.5, 0.0}) {
-        auto [d, m] = gear_sample(seed, context_of(rho_inf), kind);
+        auto sampled = gear_sample(seed, context_of(rho_inf), kind);
+        auto& d = sampled.d;
+        auto& m = sampled.motion;
         const Gear gear(d);
         start(gear, m);
         m.lambda[0] = 1.3;
@@ -296,7 +300,9 @@ TEST(Connectors, GearsDoNoWorkAndHaveTheirTangents) {
 TEST(Connectors, SurfacesDoNoWorkAndHaveTheirTangents) {
   for (const double rho_inf : {1.0, 0.5, 0.0})
     for (const double c : {0.0, 0.6}) {
-      auto [d, m] = sample(3, context_of(rho_inf));
+      auto sampled = sample(3, context_of(rho_inf));
+      auto& d = sampled.d;
+      auto& m = sampled.motion;
       d.values = {{"semi_axes.x", 0.9}, {"semi_axes.y", 1.4}, {"semi_axes.z", c}};
       const PointOnSurface surface(d);
       m.lambda[0] = 1.3;
@@ -323,7 +329,9 @@ TEST(Connectors, SurfacesDoNoWorkAndHaveTheirTangents) {
 TEST(Connectors, GearsHaveTheirAccelerationTerms) {
   using Kind = GearCoordinate::Kind;
   for (const Kind kind : {Kind::centres, Kind::axes, Kind::angle, Kind::displacement}) {
-    auto [d, m] = gear_sample(2, context_of(0.0), kind);
+    auto sampled = gear_sample(2, context_of(0.0), kind);
+    auto& d = sampled.d;
+    auto& m = sampled.motion;
     const Gear gear(d);
     start(gear, m);
     const auto at = [&](double t, auto&& what) {

@@ -79,7 +79,9 @@ template <class Item>
 void expect_laws(const std::function<void(LoadDescription&)>& change) {
   for (const double rho_inf : {1.0, 0.5, 0.0})
     for (unsigned seed = 1; seed <= 6; ++seed) {
-      auto [d, m] = sample(seed, context_of(rho_inf));
+      auto sampled = sample(seed, context_of(rho_inf));
+      auto& d = sampled.d;
+      auto& m = sampled.motion;
       change(d);
       const Item item(d);
       m.at_start([&](const PairStep& s) {
@@ -124,7 +126,9 @@ void expect_laws(const std::function<void(LoadDescription&)>& change) {
 template <class Item>
 void expect_accelerations(const std::function<void(LoadDescription&)>& change) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    auto [d, m] = sample(seed, context_of(1.0));
+    auto sampled = sample(seed, context_of(1.0));
+    auto& d = sampled.d;
+    auto& m = sampled.motion;
     change(d);
     const Item item(d);
     const auto at = [&](double t, auto&& what) {

@@ -41,7 +41,9 @@ TEST(TorsionalSpring, HasTheTangentOfItsWrench) {
     for (const double rho_inf : {1.0, 0.5, 0.0}) {
       StepContext context = context_of(rho_inf);
       context.conserving = conserving;
-      const auto [spring, m] = sample(1, context, 3.0, 2.0);
+      const auto sampled = sample(1, context, 3.0, 2.0);
+      const auto& spring = sampled.spring;
+      const auto& m = sampled.motion;
       expect_derivative(
           wrench_tangent(evaluate(spring, m)),
           [&](const Vec& d) -> Vec { return wrenches(evaluate(spring, m, d)); },

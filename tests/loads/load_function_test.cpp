@@ -77,7 +77,9 @@ void expect_laws(const std::function<void(LoadDescription&)>& change, bool on_b_
                  double tolerance) {
   for (const double rho_inf : {1.0, 0.5, 0.0})
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      auto [d, m] = sample(seed, context_of(rho_inf));
+      auto sampled = sample(seed, context_of(rho_inf));
+      auto& d = sampled.d;
+      auto& m = sampled.motion;
       change(d);
       m.a_moves = !on_b_alone;
       const Item item(d);

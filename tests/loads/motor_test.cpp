@@ -56,7 +56,9 @@ TEST(Motor, HasTheTangentsOfItsWrenchAndItsRow) {
   for (const bool turns : {true, false})
     for (const char* drive : {"angle", "speed", "moment"})
       for (const double rho_inf : {1.0, 0.5, 0.0}) {
-        const auto [motor, m] = sample(1, context_of(rho_inf), turns, drive);
+        const auto sampled = sample(1, context_of(rho_inf), turns, drive);
+        const auto& motor = sampled.motor;
+        const auto& m = sampled.motion;
         expect_derivative(
             wrench_tangent(evaluate(motor, m)),
             [&](const Vec& d) -> Vec { return wrenches(evaluate(motor, m, d)); }, drive);
@@ -73,7 +75,9 @@ TEST(Motor, HasTheTangentsOfItsWrenchAndItsRow) {
 TEST(Motor, DoesTheWorkOfItsForceAlongTheCoordinate) {
   for (unsigned seed = 1; seed <= 8; ++seed)
     for (const bool turns : {true, false}) {
-      const auto [motor, m] = sample(seed, context_of(1.0), turns, "angle");
+      const auto sampled = sample(seed, context_of(1.0), turns, "angle");
+      const auto& motor = sampled.motor;
+      const auto& m = sampled.motion;
       const PairTerms t = evaluate(motor, m);
       const double now = m.at_start([&](const PairStep& s) { return motor.report(s)[3]; });
       const double then = t.g[0] + 2.0 + std::sin(3.0 * m.context.t_n1());
@@ -84,7 +88,9 @@ TEST(Motor, DoesTheWorkOfItsForceAlongTheCoordinate) {
 // A speed integrates to its angle. @tests{drive-row}
 TEST(Motor, FollowsTheIntegralOfItsSpeed) {
   for (const bool turns : {true, false}) {
-    const auto [motor, m] = sample(3, context_of(1.0), turns, "speed");
+    const auto sampled = sample(3, context_of(1.0), turns, "speed");
+    const auto& motor = sampled.motor;
+    const auto& m = sampled.motion;
     const StepContext& c = m.context;
     PrescribedRows rows;
     m.with(Displacement::Zero(), [&](const PairStep& s) {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/engines/sparse_engine.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/solids/loads/traction.hpp>
 #include <polhode/solids/materials/registry.hpp>
@@ -58,7 +58,7 @@ StepReport one_long_step(const System& system, State& state, double least) {
   control.newton.max_iterations = 30;
   start(system, state, ga, 50.0);
   Stepper stepper(system,
-                  std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum), ga,
+                  std::make_unique<SparseEngine>(system, "block_lu", MomentumRate::momentum), ga,
                   control, lane_kernels("automatic"));
   stepper.begin(state);
   return stepper.advance(state, 50.0);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/engines/sparse_engine.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/solids/materials/registry.hpp>
@@ -100,7 +100,7 @@ struct FlexibleScene {
     state = system.initial_state();
     start_report = start(system, state, ga, o.step);
     auto made =
-        std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum, o.factor);
+        std::make_unique<SparseEngine>(system, "block_lu", MomentumRate::momentum, o.factor);
     engine = made.get();
     StepControl control;
     control.step = o.step;
@@ -130,7 +130,7 @@ struct FlexibleScene {
   System system;
   State state;
   StartReport start_report;
-  CoupledEngine* engine = nullptr;
+  SparseEngine* engine = nullptr;
   std::unique_ptr<Stepper> stepper;
 };
 

@@ -129,7 +129,8 @@ class SwingOnTriangles : public testing::TestWithParam<Swing> {};
 /// with the amplitude A loses A δ of the amplitude, here 1e-3.
 /// @tests{contact-one-gap}
 TEST_P(SwingOnTriangles, KeepsItsAmplitudeOverTenSwings) {
-  const auto [bowl, cell, dt] = GetParam();
+  const bool bowl = GetParam().bowl;
+  const double cell = GetParam().cell, dt = GetParam().dt;
   const double R = 1.0, rho = 0.05, A = 0.2, direction = bowl ? 0.4 : 0.0;
   const double period = 2.0 * std::numbers::pi * std::sqrt((R - rho) / 9.81) * (1.0 + A * A / 16.0);
   const auto count = [&](double length) { return 2 * static_cast<int>(0.5 * length / cell) + 1; };

@@ -18,7 +18,7 @@ namespace {
 template <class Place>
 std::string inline_block(const std::array<int, 3>& cells, Place&& place) {
   std::string nodes, elements;
-  const auto [nx, ny, nz] = cells;
+  const int nx = cells[0], ny = cells[1], nz = cells[2];
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)
       for (int i = 0; i <= nx; ++i) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/engines/sparse_engine.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/solids/loads/pressure.hpp>
 #include <polhode/solids/materials/registry.hpp>
@@ -109,8 +109,8 @@ struct Block {
     control.newton.tolerance = 1e-6;
     stepper = std::make_unique<Stepper>(
         system,
-        std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum,
-                                        NodeFactor::every_iteration),
+        std::make_unique<SparseEngine>(system, "block_lu", MomentumRate::momentum,
+                                       NodeFactor::every_iteration),
         ga, control, lane_kernels("automatic"));
     stepper->begin(state);
   }

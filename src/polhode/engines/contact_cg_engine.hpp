@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include <polhode/equations/newton_engine.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/linear/block_cg.hpp>
 #include <polhode/system/body_contacts.hpp>

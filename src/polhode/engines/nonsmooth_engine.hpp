@@ -7,6 +7,7 @@
 #include <polhode/engines/impulse_newton.hpp>
 #include <polhode/engines/projected_gauss_seidel.hpp>
 #include <polhode/engines/sphere_gauss_seidel.hpp>
+#include <polhode/equations/newton_engine.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/system/body_contacts.hpp>
 #include <polhode/system/impulsive_contacts.hpp>

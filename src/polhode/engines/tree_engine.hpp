@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/engines/tree_loops.hpp>
+#include <polhode/equations/newton_engine.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/kernels/dispatch.hpp>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/dynamics/momentum_step.hpp>
+#include <polhode/equations/constraint_check.hpp>
 #include <polhode/equations/trial.hpp>
 #include <polhode/linear/kkt.hpp>
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <polhode/equations/iterate_snapshot.hpp>
+#include <polhode/equations/newton_engine.hpp>
 #include <polhode/system/barrier_constraint.hpp>
 
 namespace polhode {

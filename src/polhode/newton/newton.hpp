@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/equations/trial.hpp>
+#include <polhode/equations/newton_engine.hpp>
 #include <polhode/newton/newton_report.hpp>
 
 namespace polhode {

@@ -2,8 +2,6 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
-#include <polhode/engines/contact_engine.hpp>
-#include <polhode/engines/coupled_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/engines/tree_engine.hpp>
@@ -135,32 +133,28 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
           system, a.newton_tolerance > 0.0 ? a.newton_tolerance : ContactCgEngine::kResidual);
     }
   }
-  if (!system.nodes().empty()) {
-    if (a.solver == "tree")
-      throw InputError("analysis.solver",
-                       has_surfaces(system) ? "'tree' does not support contacts"
-                                            : "'tree' does not support deformable solids",
-                       "Use solver: automatic, block_lu, klu or sparse_lu");
-    const NodeFactor factor =
-        policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
-            ? NodeFactor::every_iteration
-            : NodeFactor::automatic;
-    return std::make_unique<CoupledEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
-                                           rate, factor);
-  }
-  if (system.contacts())
-    return std::make_unique<ContactEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
-                                           rate);
-  if (a.solver != "automatic" && a.solver != "tree")
-    return std::make_unique<SparseEngine>(system, a.solver, rate);
+  const bool solids = !system.nodes().empty();
+  if (solids && a.solver == "tree")
+    throw InputError("analysis.solver",
+                     has_surfaces(system) ? "'tree' does not support contacts"
+                                          : "'tree' does not support deformable solids",
+                     "Use solver: automatic, block_lu, klu or sparse_lu");
+  const bool given = a.solver != "automatic" && a.solver != "tree";
+  const std::string solver = given ? a.solver : "block_lu";
+  const NodeFactor factor =
+      policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
+          ? NodeFactor::every_iteration
+          : NodeFactor::automatic;
+  if (solids || system.contacts() || given)
+    return std::make_unique<SparseEngine>(system, solver, rate, factor);
   if (!tree_fits) {
     narration += "Solver: block LU, as 'tree' does not support this momentum_rate or jacobian.\n";
-    return std::make_unique<SparseEngine>(system, "block_lu", rate);
+    return std::make_unique<SparseEngine>(system, solver, rate);
   }
   auto tree = std::make_unique<TreeEngine>(system, a.isa);
   const bool elastic = has_elastic_pairs(system);
   if (a.solver == "tree" || (!elastic && tree->plan().most_open <= kFewOpenLoops)) return tree;
-  auto sparse = std::make_unique<SparseEngine>(system, "block_lu", rate);
+  auto sparse = std::make_unique<SparseEngine>(system, solver, rate);
   if (tree->flops() < kTreeAdvantage * sparse->solver().factor_flops()) return tree;
   narration += elastic ? "Solver: block LU, as beams or cables connect bodies.\n"
                        : format("Solver: block LU, as up to {} loops are open at one body.\n",

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include <polhode/equations/newton_engine.hpp>
 #include <polhode/equations/newton_system.hpp>
-#include <polhode/equations/trial.hpp>
 #include <polhode/kernels/dispatch.hpp>
 #include <polhode/stepping/balance.hpp>
 #include <polhode/stepping/node_ledger.hpp>

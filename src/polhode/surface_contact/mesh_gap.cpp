@@ -141,7 +141,7 @@ MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& 
 /// Derivatives of the combined distance. D² has 2D Σ p ∂d with shares p, and D the second
 /// derivative Σ (w f′(d)/f(D) ∂d∂d + p ∂²d) − f′(D)/f(D) ∂D∂D.
 void MeshGapStep::fill(const MeshGap& at_n, const MeshGap& at_n1) {
-  constexpr int kLengths = NearestFour::kLengths;
+  constexpr int kSetLengths = NearestFour::kLengths;
   over.d_n = at_n.distance;
   over.d_n1 = at_n1.distance;
   over.resize();
@@ -154,9 +154,9 @@ void MeshGapStep::fill(const MeshGap& at_n, const MeshGap& at_n1) {
       if (set < 0) continue;
       const double d = p.four.distance, weight = gap->single() ? 1.0 : D * p.share / d;
       const NearestFour::Lengths slope = p.four.gradient();
-      g.segment<kLengths>(kLengths * set) += weight * slope;
+      g.segment<kSetLengths>(kSetLengths * set) += weight * slope;
       if (!last) continue;
-      auto H = over.H_n1.block<kLengths, kLengths>(kLengths * set, kLengths * set);
+      auto H = over.H_n1.block<kSetLengths, kSetLengths>(kSetLengths * set, kSetLengths * set);
       H += weight * p.four.hessian(over.moves[set].x_n1);
       if (!gap->single())
         H += 2.0 * D * (p.bend / (4.0 * d * d) - p.share / (4.0 * d * d * d)) * slope *

@@ -16,7 +16,7 @@ namespace polhode {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Document = nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUnsigned = 5125;  // Component types of glTF, section 3.6.2.2.
 constexpr std::array<std::array<double, 3>, 8> kPalette = {{{0.07, 0.24, 0.57},
@@ -31,7 +31,7 @@ constexpr std::array<std::array<double, 3>, 8> kPalette = {{{0.07, 0.24, 0.57},
 /// Numbers of the file, and the views and accessors that refer to them.
 class Numbers {
  public:
-  Numbers(Json& views, Json& accessors) : views_(views), accessors_(accessors) {}
+  Numbers(Document& views, Document& accessors) : views_(views), accessors_(accessors) {}
 
   std::size_t floats(const std::vector<float>& values, const char* type, std::size_t width,
                      bool bounds) {
@@ -65,12 +65,12 @@ class Numbers {
     return accessors_.size() - 1;
   }
 
-  Json &views_, &accessors_;
+  Document &views_, &accessors_;
   std::string bytes_;
 };
 
 template <class Number>
-std::vector<Number> numbers(const SceneData& scene, const Json& packed) {
+std::vector<Number> numbers(const SceneData& scene, const Document& packed) {
   const std::size_t words = packed["n"].get<std::size_t>() * packed["w"].get<std::size_t>();
   std::vector<Number> values(words);
   if (words == 0) return values;
@@ -80,8 +80,8 @@ std::vector<Number> numbers(const SceneData& scene, const Json& packed) {
   return values;
 }
 
-const Json* channel(const Json& manifest, const char* path) {
-  for (const Json& c : manifest["channels"])
+const Document* channel(const Document& manifest, const char* path) {
+  for (const Document& c : manifest["channels"])
     if (c["path"] == path) return &c["data"];
   return nullptr;
 }
@@ -116,18 +116,18 @@ std::string block(const char* type, std::string bytes, char filling) {
 }  // namespace
 
 std::string scene_glb(const SceneData& scene) {
-  const Json m = Json::parse(scene.manifest);
-  const Json *position = channel(m, "packed/bodies/position"),
-             *orientation = channel(m, "packed/bodies/orientation");
+  const Document m = Document::parse(scene.manifest);
+  const Document *position = channel(m, "packed/bodies/position"),
+                 *orientation = channel(m, "packed/bodies/orientation");
   if (position == nullptr || orientation == nullptr || m["meshes"].empty())
     throw InputError("glb", "there are no bodies with shapes in these results",
                      "Name results of a model with bodies");
-  Json file = {{"asset", {{"version", "2.0"}, {"generator", "Polhode"}}},
-               {"scene", 0},
-               {"scenes", {{{"nodes", {0}}}}}};
-  Json views = Json::array(), accessors = Json::array(), meshes = Json::array(),
-       nodes = Json::array(), channels = Json::array(), samplers = Json::array(),
-       materials = Json::array();
+  Document file = {{"asset", {{"version", "2.0"}, {"generator", "Polhode"}}},
+                   {"scene", 0},
+                   {"scenes", {{{"nodes", {0}}}}}};
+  Document views = Document::array(), accessors = Document::array(), meshes = Document::array(),
+           nodes = Document::array(), channels = Document::array(), samplers = Document::array(),
+           materials = Document::array();
   Numbers data(views, accessors);
   for (const auto& [r, g, b] : kPalette)
     materials.push_back({{"pbrMetallicRoughness",
@@ -136,13 +136,13 @@ std::string scene_glb(const SceneData& scene) {
                            {"roughnessFactor", 0.6}}},
                          {"doubleSided", true}});
   std::vector<std::array<std::size_t, 2>> shapes;  // Accessors of points and corners.
-  for (const Json& mesh : m["meshes"])
+  for (const Document& mesh : m["meshes"])
     shapes.push_back({data.floats(numbers<float>(scene, mesh["points"]), "VEC3", 3, true),
                       data.integers(numbers<std::uint32_t>(scene, mesh["triangles"]))});
   // glTF has y up; here it is opposite to gravity, z if there is none.
-  const Json gravity = m.value("gravity", Json::array({0.0, 0.0, -1.0}));
+  const Document gravity = m.value("gravity", Document::array({0.0, 0.0, -1.0}));
   const bool y_up = std::abs(gravity[1].get<double>()) > std::abs(gravity[2].get<double>());
-  Json root = {{"name", m["title"].get<std::string>().empty() ? "Model" : m["title"]}};
+  Document root = {{"name", m["title"].get<std::string>().empty() ? "Model" : m["title"]}};
   if (!y_up) root["rotation"] = {-std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)};
   nodes.push_back(root);
 
@@ -153,21 +153,21 @@ std::string scene_glb(const SceneData& scene) {
   const bool moves = time.size() > 1;
   const std::size_t clock = moves ? data.floats(time, "SCALAR", 1, true) : 0;
   const std::size_t count = m["bodies"].size();
-  Json children = Json::array();
+  Document children = Document::array();
   for (std::size_t i = 0; i < count; ++i) {
-    const Json& body = m["bodies"][i];
-    const Json parts = body.value("parts", Json::array());
-    Json part_nodes = Json::array();
+    const Document& body = m["bodies"][i];
+    const Document parts = body.value("parts", Document::array());
+    Document part_nodes = Document::array();
     const std::size_t own = nodes.size();
     nodes.push_back({{"name", body["name"]}});
-    for (const Json& part : parts) {
+    for (const Document& part : parts) {
       if (!part.contains("mesh")) continue;
       const auto& [points, corners] = shapes[part["mesh"].get<std::size_t>()];
       meshes.push_back({{"primitives",
                          {{{"attributes", {{"POSITION", points}}},
                            {"indices", corners},
                            {"material", i % kPalette.size()}}}}});
-      Json node = {{"mesh", meshes.size() - 1}, {"translation", part["p"]}};
+      Document node = {{"mesh", meshes.size() - 1}, {"translation", part["p"]}};
       if (part.contains("q"))
         node["rotation"] = {part["q"][1], part["q"][2], part["q"][3], part["q"][0]};
       part_nodes.push_back(nodes.size());

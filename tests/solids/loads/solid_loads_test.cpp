@@ -191,10 +191,10 @@ TEST(SolidLoads, PutTheSameForceOnEveryNode) {
 
 TEST(SolidLoads, AreRefusedWithoutFacesOrNodes) {
   const std::vector<Vec3> X(4, Vec3::Zero());
-  EXPECT_THROW(solids::make_traction("loads.t", {}, X, {}), InputError);
-  EXPECT_THROW(solids::make_nodal_force("loads.f", {}, X, {}), InputError);
+  EXPECT_THROW((void)solids::make_traction("loads.t", {}, X, {}), InputError);
+  EXPECT_THROW((void)solids::make_nodal_force("loads.f", {}, X, {}), InputError);
   const std::vector<solids::LoadedFaces> lines = {{"line2", {0, 1}}};
-  EXPECT_THROW(solids::make_dead_pressure("loads.p", lines, X, constant(1.0)), InputError);
+  EXPECT_THROW((void)solids::make_dead_pressure("loads.p", lines, X, constant(1.0)), InputError);
 }
 
 }  // namespace

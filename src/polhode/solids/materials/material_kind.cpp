@@ -11,8 +11,8 @@
 namespace polhode::solids {
 namespace {
 
-constexpr double kPositive = std::numeric_limits<double>::min();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeastPositive = std::numeric_limits<double>::min();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -28,9 +28,9 @@ std::string listed(const std::vector<std::vector<std::string>>& sets) {
 }
 
 std::string range_text(const Parameter& p) {
-  if (p.least == kPositive) return "a positive number";
-  if (p.least == 0.0 && p.most == kInfinity) return "a number that is not negative";
-  if (p.most == kInfinity) return format("a number of at least {:g}", p.least);
+  if (p.least == kLeastPositive) return "a positive number";
+  if (p.least == 0.0 && p.most == kUnbounded) return "a number that is not negative";
+  if (p.most == kUnbounded) return format("a number of at least {:g}", p.least);
   return format("a number between {:g} and {:g}", p.least, p.most);
 }
 
@@ -97,16 +97,16 @@ ParameterValues checked_values(std::string_view where, const MaterialKind& kind,
 
 std::vector<Parameter> isotropic_parameters() {
   return {
-      {"youngs_modulus", "Pa", {}, kPositive, kInfinity, "E"},
+      {"youngs_modulus", "Pa", {}, kLeastPositive, kUnbounded, "E"},
       {"poisson_ratio",
        "-",
        {},
        std::nextafter(-1.0, 0.0),
        std::nextafter(0.5, 0.0),
        "between -1 and 0.5, both excluded"},
-      {"lame", "Pa", {}, -kInfinity, kInfinity, "first Lamé constant λ"},
-      {"shear_modulus", "Pa", {}, kPositive, kInfinity, "μ = E/(2(1 + ν))"},
-      {"bulk_modulus", "Pa", {}, kPositive, kInfinity, "K = λ + 2μ/3"},
+      {"lame", "Pa", {}, -kUnbounded, kUnbounded, "first Lamé constant λ"},
+      {"shear_modulus", "Pa", {}, kLeastPositive, kUnbounded, "μ = E/(2(1 + ν))"},
+      {"bulk_modulus", "Pa", {}, kLeastPositive, kUnbounded, "K = λ + 2μ/3"},
   };
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/engines/sparse_engine.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/stepping/single_step.hpp>
@@ -12,7 +12,7 @@
 #include <polhode/stepping/stepper.hpp>
 #include <support/bar_elements.hpp>
 
-namespace polhode::coupled_engine_tests {
+namespace polhode::condensed_nodes_tests {
 namespace {
 
 using test::lattice;
@@ -72,7 +72,7 @@ struct Scene {
     start(system, state, ga, 0.01);
     const LaneKernels& kernels = lane_kernels("automatic");
     auto made =
-        std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum, o.factor);
+        std::make_unique<SparseEngine>(system, "block_lu", MomentumRate::momentum, o.factor);
     engine = made.get();
     StepControl control;
     control.step = o.step;
@@ -94,11 +94,11 @@ struct Scene {
   Options options;
   GeneralizedAlpha ga;
   State state;
-  CoupledEngine* engine = nullptr;
+  SparseEngine* engine = nullptr;
   std::unique_ptr<Stepper> stepper;
 };
 
-TEST(CoupledEngine, KeepsEnergyAndMomentaOfALatticeOnATumblingBody) {
+TEST(CondensedNodes, KeepsEnergyAndMomentaOfALatticeOnATumblingBody) {
   Scene s({.two_bodies = false});
   s.run(1000);
   EXPECT_LT(s.energy_drift(), 1e-12);
@@ -108,7 +108,7 @@ TEST(CoupledEngine, KeepsEnergyAndMomentaOfALatticeOnATumblingBody) {
   EXPECT_EQ(s.state.ledger.rejected, 0);
 }
 
-TEST(CoupledEngine, KeepsEnergyAndMomentaOfElementsWithoutFreeNodes) {
+TEST(CondensedNodes, KeepsEnergyAndMomentaOfElementsWithoutFreeNodes) {
   for (const int length : {1, 3}) {
     Scene s({.two_bodies = true, .length = length});
     s.run(500);
@@ -117,7 +117,7 @@ TEST(CoupledEngine, KeepsEnergyAndMomentaOfElementsWithoutFreeNodes) {
   }
 }
 
-TEST(CoupledEngine, KeepsEnergyOnAJointUnderGravity) {
+TEST(CondensedNodes, KeepsEnergyOnAJointUnderGravity) {
   Scene s({.two_bodies = true, .hinge = true, .gravity = Vec3(0, 0, -9.81)});
   s.run(500);
   EXPECT_LT(s.energy_drift(), 1e-12);
@@ -125,7 +125,7 @@ TEST(CoupledEngine, KeepsEnergyOnAJointUnderGravity) {
   EXPECT_LT(s.state.ledger.l_drift / s.state.ledger.l_scale, 1e-12);
 }
 
-TEST(CoupledEngine, LedgerIncludesTheReactionOfGroundOnNodes) {
+TEST(CondensedNodes, LedgerIncludesTheReactionOfGroundOnNodes) {
   Scene s({.clamp = true, .gravity = Vec3(0, 0, -9.81)});
   s.run(300, 0.01);
   EXPECT_LT(s.energy_drift(), 1e-12);
@@ -133,7 +133,7 @@ TEST(CoupledEngine, LedgerIncludesTheReactionOfGroundOnNodes) {
   EXPECT_LT(s.state.ledger.l_drift / s.state.ledger.l_scale, 1e-11);
 }
 
-TEST(CoupledEngine, RecordsTheEnergyDissipatedByViscosity) {
+TEST(CondensedNodes, RecordsTheEnergyDissipatedByViscosity) {
   Scene s({.two_bodies = true, .viscosity = 2.0});
   const double before = s.state.ledger.initial_energy;
   s.run(300);
@@ -141,7 +141,7 @@ TEST(CoupledEngine, RecordsTheEnergyDissipatedByViscosity) {
   EXPECT_LT(s.energy_drift(), 1e-12);
 }
 
-TEST(CoupledEngine, ConvergesToTheSameStepWithAReusedFactorisation) {
+TEST(CondensedNodes, ConvergesToTheSameStepWithAReusedFactorisation) {
   Scene newton({.two_bodies = true, .hinge = true, .gravity = Vec3(0, 0, -9.81)});
   Scene kept({.two_bodies = true,
               .hinge = true,
@@ -152,11 +152,11 @@ TEST(CoupledEngine, ConvergesToTheSameStepWithAReusedFactorisation) {
   kept.run(200, 0.005);
   for (std::size_t k = 0; k < newton.state.node_x.size(); ++k)
     EXPECT_NEAR(newton.state.node_x[k], kept.state.node_x[k], 1e-9);
-  EXPECT_LT(kept.engine->factorisations(), 60);
+  EXPECT_LT(kept.engine->nodes()->factorisations(), 60);
   EXPECT_LT(kept.energy_drift(), 1e-11);
 }
 
-TEST(CoupledEngine, ConvergesQuadraticallyNearTheSolution) {
+TEST(CondensedNodes, ConvergesQuadraticallyNearTheSolution) {
   for (const double rho_inf : {1.0, 0.6}) {
     Scene s({.two_bodies = true, .hinge = true, .viscosity = 0.7, .length = 2, .rho_inf = rho_inf});
     s.run(5);
@@ -166,7 +166,7 @@ TEST(CoupledEngine, ConvergesQuadraticallyNearTheSolution) {
     trial.context.dt = 0.02;
     start_trial(s.system, s.state, trial);
     predict_nodes(s.system, s.state, trial, {});
-    CoupledEngine engine(s.system, "block_lu", MomentumRate::momentum, NodeFactor::every_iteration);
+    SparseEngine engine(s.system, "block_lu", MomentumRate::momentum, NodeFactor::every_iteration);
     engine.begin_step(s.state, trial);
     std::vector<double> increments;
     for (int i = 0; i < 6; ++i)
@@ -177,7 +177,7 @@ TEST(CoupledEngine, ConvergesQuadraticallyNearTheSolution) {
   }
 }
 
-TEST(CoupledEngine, AccelerationsOfAnInstantAreRatesOfTheVelocities) {
+TEST(CondensedNodes, AccelerationsOfAnInstantAreRatesOfTheVelocities) {
   Scene s({.two_bodies = true, .hinge = true, .viscosity = 0.5, .gravity = Vec3(0, 0, -9.81)});
   s.run(20);
   project_velocities(s.system, s.state);
@@ -195,7 +195,7 @@ TEST(CoupledEngine, AccelerationsOfAnInstantAreRatesOfTheVelocities) {
     EXPECT_NEAR((s.state.node_v[k] - before.node_v[k]) / (2 * h), now.node_a[k], 1e-3 * scale);
 }
 
-TEST(CoupledEngine, IsOfSecondOrder) {
+TEST(CondensedNodes, IsOfSecondOrder) {
   for (const double rho_inf : {1.0, 0.8, 0.3}) {
     const auto end = [&](int n) {
       Scene s(
@@ -216,4 +216,4 @@ TEST(CoupledEngine, IsOfSecondOrder) {
 }
 
 }  // namespace
-}  // namespace polhode::coupled_engine_tests
+}  // namespace polhode::condensed_nodes_tests
