@@ -23,6 +23,14 @@ CondensedNodes::CondensedNodes(const System& system, NodeFactor policy)
     : system_(&system), condensation_(system), nodes_(system), shares_(system.body_count()) {
   reuse_ = policy == NodeFactor::reuse ||
            (policy == NodeFactor::automatic && system.nodes().unknowns() > kFactorAlways);
+  const Nodes& nodes = system.nodes();
+  int free = 0;
+  for (int i = 0; i < nodes.count(); ++i) {
+    if (nodes.bonded(i)) continue;
+    node_mass_ += nodes.node_mass(i);
+    ++free;
+  }
+  node_mass_ /= std::max(free, 1);
 }
 
 void CondensedNodes::begin() {
@@ -75,7 +83,7 @@ double CondensedNodes::merit(double scale, Vec& rhs) {
   return sum;
 }
 
-double CondensedNodes::largest_residual() const {
+double CondensedNodes::largest_residual(double scale) const {
   const Nodes& nodes = system_->nodes();
   double largest = 0.0;
   for (int i = 0; i < nodes.count(); ++i)
@@ -83,7 +91,7 @@ double CondensedNodes::largest_residual() const {
       if (nodes.unknown(i, c) >= 0)
         largest =
             std::max(largest, std::abs(nodes_.residual()[3 * static_cast<std::size_t>(i) + c]));
-  return largest;
+  return node_mass_ > 0.0 ? scale * system_->mean_mass() / node_mass_ * largest : 0.0;
 }
 
 void CondensedNodes::move(const State& state, Trial& trial, double part, Iteration& done) {

@@ -47,8 +47,9 @@ class CondensedNodes {
   /// Adds the residuals of bonded nodes, times `scale`, to the right-hand side of the bodies.
   /// @returns R·M⁻¹R of the free nodes.
   double merit(double scale, Vec& rhs);
-  /// Largest residual of a node [N].
-  [[nodiscard]] double largest_residual() const;
+  /// Largest displacement β Δt² R/m of a node by its residual, at the mean mass of nodes [m].
+  /// @param scale  As for merit().
+  [[nodiscard]] double largest_residual(double scale) const;
 
   /// Moves nodes and internal unknowns of elements by this part of the increment, after the bodies.
   /// `done.increment` becomes that of a node if it is larger.
@@ -74,9 +75,11 @@ class CondensedNodes {
   const System* system_;
   NodeCondensation condensation_;
   NodeSystem nodes_;
-  std::vector<Vec6> shares_;   ///< By body: its part of the condensed residual.
-  std::vector<double> du_;     ///< Whole increments, three per node.
+  std::vector<Vec6>
+      shares_;              ///< By body: its part of the condensed residual, or of that of merit().
+  std::vector<double> du_;  ///< Whole increments, three per node.
   std::vector<double> moved_;  ///< Applied part of them.
+  double node_mass_ = 0.0;     ///< Mean of free nodes [kg].
   bool reuse_ = false;
   double factored_dt_ = 0.0;
   int step_iterations_ = 0, factorisations_ = 0, worst_node_ = -1;

@@ -17,8 +17,8 @@ constexpr int kMaxPairChanges = 4;
 /// Scaled residual that is round-off, as a part of ℓ.
 constexpr double kRoundOff = 1e-14;
 
-/// Whether surfaces of solids have barriers. Cables alone, whose few nodes bounce on what they
-/// contact, converge as well without a line search.
+/// Whether surfaces of solids have barriers. Cables alone, whose nodes have no unknowns besides
+/// those of bodies, converge as well without a line search.
 bool meshes_meet(const Nodes& nodes) {
   if (nodes.unknowns() == 0) return false;
   for (int g = 0; g < nodes.group_count(); ++g)
@@ -74,6 +74,7 @@ void SparseEngine::set_up() {
   if (nodes_) more = nodes_->pairs();
   if (contacts_) more.insert(more.end(), contacts_->pairs().begin(), contacts_->pairs().end());
   if (nodes_ || contacts_) newton_.couple(more);
+  if (nodes_) pair_changes_ = nodes_->pair_changes();
   solver_->analyse(newton_.topology());
   factored_ = false;
   ++analyses_;
@@ -111,13 +112,10 @@ bool SparseEngine::prepare_nodes(const State& state, Trial& trial, bool factor, 
     }
   }
   if (!factor) return true;
-  const int known = nodes_->pair_changes();
-  if (!nodes_->factor(trial)) {
-    done.reason = "the matrix of the solids is singular";
-    return false;
-  }
-  if (nodes_->pair_changes() != known) set_up();
-  return true;
+  const bool regular = nodes_->factor(trial);
+  if (nodes_->pair_changes() != pair_changes_) set_up();
+  if (!regular) done.reason = "the matrix of the solids is singular";
+  return regular;
 }
 
 /// Residual and, if `tangent`, matrix of bodies and rows; of solids the matrix only.
@@ -181,6 +179,7 @@ Iteration SparseEngine::iterate(const State& state, Trial& trial, bool refactor,
 }
 
 void SparseEngine::move(const State& state, Trial& trial, Iteration& done) {
+  done.rotation = 0.0;  // not that of an iterate that was left again
   apply_increments(*system_, state, trial, x_, part_, done, worst_body_);
   if (nodes_) nodes_->move(state, trial, part_, done);
 }
@@ -204,7 +203,7 @@ void SparseEngine::search(const State& state, Trial& trial, Iteration& done) {
     assemble(state, trial, false);
     const double after = merit();
     double size = rhs_.size() > 0 ? rhs_.lpNorm<Eigen::Infinity>() : 0.0;
-    if (nodes_) size = std::max(size, trial.scale(*system_) * nodes_->largest_residual());
+    if (nodes_) size = std::max(size, nodes_->largest_residual(trial.scale(*system_)));
     return std::isfinite(after) && size < kRoundOff * system_->length_scale() ? -1.0 : after;
   };
   search_along(kReduceMerit, before, part_, apply, reduced);

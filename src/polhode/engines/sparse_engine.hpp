@@ -43,7 +43,7 @@ class SparseEngine final : public NewtonEngine {
     return contacts_ ? contacts_->contacts() : nullptr;
   }
 
-  /// The system as last assembled: residuals by body and by row, for reports.
+  /// The system as last assembled: residuals by body and by row, without solids and contacts.
   [[nodiscard]] const NewtonSystem& assembled() const { return newton_; }
   [[nodiscard]] const linear::LinearSolver& solver() const { return *solver_; }
   /// Nodes of solids, null without any.
@@ -74,6 +74,7 @@ class SparseEngine final : public NewtonEngine {
   IterateSnapshot before_;  ///< The previous iterate, as long as increments are large.
   double part_ = 1.0;       ///< Applied part of x_.
   bool factored_ = false;
+  int pair_changes_ = 0;  ///< Of nodes_, at the last set_up().
   int analyses_ = 0, worst_body_ = -1;
 };
 
