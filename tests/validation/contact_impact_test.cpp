@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "contact/scene.hpp"
+#include "contact/starts.hpp"
+#include "validation/model_scene.hpp"
 
 namespace polhode::contact_impact_tests {
 namespace {
@@ -13,20 +14,18 @@ using namespace test;
 TEST(ContactImpact, HertzImpactHasItsForceAndDuration) {
   const double K = 1e7, deepest = std::pow(5.0 / (4.0 * K), 0.4);
   const double force = K * std::pow(deepest, 1.5), time = 2.9432 * deepest;
-  Scene s(Vec3::Zero());
+  ModelScene s(Vec3::Zero());
   const int ball = s.add_ball("ball", 0.1, 1.0, at({0.0, 0.0, 0.1 + 1e-9}, {0.0, 0.0, -1.0}));
   s.add_floor();
-  contact::ContactLaw law;
-  law.potential = contact::NormalPotential::hertz;
-  law.stiffness = K;
-  law.restitution = 1.0;
-  s.contacts->set_default(law);
+  s.law().potential = "hertz";
+  s.law().stiffness = K;
+  s.law().restitution = 1.0;
   s.begin(time / 20.0);
   double largest = 0.0;
   int touching = 0;
   for (int k = 0; k < 40; ++k) {
-    ASSERT_TRUE(s.step()) << s.last.text();
-    const auto reports = s.contacts->reports();
+    s.step();
+    const auto reports = s.simulation().contact_set()->reports();
     const double f = reports.empty() ? 0.0 : reports[0].normal_force;
     largest = std::max(largest, f);
     touching += f > 0.0 ? 1 : 0;
@@ -39,14 +38,14 @@ TEST(ContactImpact, HertzImpactHasItsForceAndDuration) {
 /// Five balls with gaps: impacts in sequence, the last ball leaves with the whole speed.
 TEST(ContactImpact, CradleWithGaps) {
   const double R = 0.05, gap = 2e-3;
-  Scene s(Vec3::Zero());
+  ModelScene s(Vec3::Zero());
   for (int i = 0; i < 5; ++i)
     s.add_ball("ball " + std::to_string(i), R, 1.0,
                at({i * (2.0 * R + gap) - (i == 0 ? 0.01 : 0.0), 0.0, 0.0},
                   {i == 0 ? 1.0 : 0.0, 0.0, 0.0}));
   s.law(0.0, 1.0);
   s.begin(1e-3);
-  ASSERT_TRUE(s.run(0.1)) << s.last.text();
+  s.run(0.1);
   for (int i = 0; i < 4; ++i) EXPECT_LT(s.motion(i).v.norm(), 1e-6) << i;
   EXPECT_NEAR(s.motion(4).v.x(), 1.0, 1e-6);
 }
@@ -55,17 +54,15 @@ TEST(ContactImpact, CradleWithGaps) {
 /// of the chain.
 TEST(ContactImpact, CradleThatTouchesIsAHertzChain) {
   const double R = 0.05;
-  Scene s(Vec3::Zero());
+  ModelScene s(Vec3::Zero());
   for (int i = 0; i < 5; ++i)
     s.add_ball("ball " + std::to_string(i), R, 1.0,
                at({i * 2.0 * R - (i == 0 ? 1e-5 : 0.0), 0.0, 0.0}, {i == 0 ? 1.0 : 0.0, 0.0, 0.0}));
-  contact::ContactLaw law;
-  law.potential = contact::NormalPotential::hertz;
-  law.stiffness = 1e9;
-  law.restitution = 1.0;
-  s.contacts->set_default(law);
+  s.law().potential = "hertz";
+  s.law().stiffness = 1e9;
+  s.law().restitution = 1.0;
   s.begin(1e-5);
-  ASSERT_TRUE(s.run(0.01)) << s.last.text();
+  s.run(0.01);
   const double expected[5] = {-0.0711, -0.0303, -0.0145, 0.1271, 0.9888};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(s.motion(i).v.x(), expected[i], 1e-3) << i;
 }
@@ -77,17 +74,15 @@ TEST(ContactImpact, CradleThatTouchesIsAHertzChain) {
 TEST(ContactImpact, DampedImpactHasThePublishedRestitution) {
   const double published[5] = {0.10099, 0.30423, 0.50018, 0.69997, 0.90001};
   for (int i = 0; i < 5; ++i) {
-    Scene s(Vec3::Zero());
+    ModelScene s(Vec3::Zero());
     const int ball = s.add_ball("ball", 0.1, 1.6, at({-0.201, 0.0, 0.0}, {10.0, 0.0, 0.0}));
-    s.contacts->add_shape({kGround, "target", geometry::sphere("target", 0.2)});
-    contact::ContactLaw law;
-    law.potential = contact::NormalPotential::linear;
-    law.stiffness = 1e6;
-    law.restitution = 0.1 + 0.2 * i;
-    law.damped = true;
-    s.contacts->set_default(law);
+    s.add_fixed("target", ModelScene::shape("sphere", {0.2}));
+    s.law().potential = "linear";
+    s.law().stiffness = 1e6;
+    s.law().restitution = 0.1 + 0.2 * i;
+    s.law().rebound = "damped";
     s.begin(1e-5);
-    ASSERT_TRUE(s.run(0.02)) << s.last.text();
+    s.run(0.02);
     EXPECT_NEAR(-s.motion(ball).v.x() / 10.0, published[i], 5e-3) << i;
   }
 }
