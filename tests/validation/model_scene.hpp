@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -63,6 +66,25 @@ class ModelScene {
     spec.sizes = std::move(sizes);
     return spec;
   }
+  /// SPHERES_IN_A_BIN: n spheres of 0.1 m and 1 kg over a bin with walls.
+  void add_bin(int n, double side) {
+    const int row = static_cast<int>(std::floor((side - 0.21) / 0.22)) + 1;
+    const double first = -0.11 * (row - 1);
+    for (int i = 0; i < n; ++i) {
+      BodyMotion start;
+      start.r = {first + 0.22 * (i % row) + 0.005 * std::sin(12.9898 * i),
+                 first + 0.22 * ((i / row) % row) + 0.005 * std::sin(78.233 * i),
+                 0.12 + 0.22 * (i / (row * row)) + 0.005 * std::sin(37.719 * i)};
+      add_ball("sphere_" + std::to_string(i), 0.1, 1.0, start);
+    }
+    add_floor();
+    for (int k = 0; k < 4; ++k) {
+      const double sign = k % 2 ? -1.0 : 1.0;
+      const Vec3 inwards = sign * (k < 2 ? Vec3::UnitX() : Vec3::UnitY());
+      add_fixed("wall_" + std::to_string(k),
+                shape("plane", {inwards.x(), inwards.y(), inwards.z()}), -0.5 * side * inwards);
+    }
+  }
   /// Contact law of all pairs, until begin().
   [[nodiscard]] ContactLawSpec& law() { return model.contacts.standard; }
   void law(double mu, double restitution, double tolerance = 0.0) {
@@ -86,6 +108,13 @@ class ModelScene {
   }
   [[nodiscard]] const Simulation& simulation() const { return *run_; }
   [[nodiscard]] BodyMotion motion(int body) const { return run_->body(body); }
+  /// Smallest distance of two shapes after the last step [m].
+  [[nodiscard]] double least_gap() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const contact::ShapePairReport& r : run_->contact_set()->reports())
+      least = std::min(least, r.gap);
+    return least;
+  }
   /// Kinetic and stored energy [J].
   [[nodiscard]] double energy() const {
     const Balance b = run_->balance();
