@@ -60,8 +60,9 @@ TEST_P(RollingInATube, SwingsOnItsOwnRadius) {
       kind == Rolling::ball
           ? s.add_ball("ball", rho, 1.0, start)
           : s.add("rod",
-                  along_y(kind == Rolling::capsule ? "capsule" : "cylinder", {2.0 * rho, 0.4}), 1.0,
-                  {0.02, 0.5 * rho * rho, 0.02}, start);
+                  kind == Rolling::capsule ? along_y("capsule", {2.0 * rho, 0.4 + 2.0 * rho})
+                                           : along_y("cylinder", {2.0 * rho, 0.4}),
+                  1.0, {0.02, 0.5 * rho * rho, 0.02}, start);
   s.add_fixed("tube", along_y("tube", {1.2, 2.0 * R, 1.0}));
   s.law(0.5, 0.0);
   s.begin(dt);
