@@ -7,11 +7,10 @@
     tools/check_clang.py BUILD --since REF    only what differs from a commit, and what includes a header that does
     tools/check_clang.py BUILD FILE ...       only these sources
 
-Sources are only parsed. With --since a changed header is checked with one source that includes it, with --every in all
-of them.
+Sources are only parsed, but without the precompiled headers of g++, so all of them take long. With --since a changed
+header is checked with one source that includes it, with --every in all of them.
 """
 import argparse
-import collections
 import concurrent.futures
 import json
 import os
@@ -21,7 +20,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -50,28 +48,8 @@ def command(entry):
     return [*result, "-Wno-overlength-strings"]  # as in cmake/warnings.cmake
 
 
-# What most sources include: parsed once for each set of options.
-HEAVY = ["Eigen/Dense", "algorithm", "fmt/format.h", "functional", "map", "memory", "optional", "span", "string", "vector"]
-# A precompiled header pays from this number of sources on.
-FEW = 4
-
-
-def options(entry):
-    return tuple(word for word in command(entry) if word != entry["file"])
-
-
-def precompile(group, folder):
-    """A header with HEAVY for these options, as a further option for clang; none if it cannot be made."""
-    header = folder / f"heavy_{abs(hash(group))}.hpp"
-    header.write_text("".join(f"#include <{name}>\n" for name in HEAVY))
-    compiled = header.with_suffix(".pch")
-    words = [word for word in group if word != "-fsyntax-only"]
-    done = subprocess.run([*words, "-x", "c++-header", str(header), "-o", str(compiled)], capture_output=True, cwd=folder)
-    return ["-include-pch", str(compiled)] if done.returncode == 0 else []
-
-
-def read(entry, more):
-    done = subprocess.run([*command(entry), *more], cwd=entry["directory"], capture_output=True, text=True)
+def read(entry):
+    done = subprocess.run(command(entry), cwd=entry["directory"], capture_output=True, text=True)
     return entry["file"], done.returncode, done.stderr
 
 
@@ -172,12 +150,8 @@ def main():
     if given.library:
         sources = {source for source in sources if not {"tests", "benchmarks"} & set(source.relative_to(ROOT).parts)}
     failed = 0
-    with concurrent.futures.ThreadPoolExecutor(given.j) as pool, tempfile.TemporaryDirectory() as folder:
-        groups = collections.Counter(options(entries[source]) for source in sources)
-        large = [group for group, count in groups.items() if count >= FEW]
-        heavy = dict(zip(large, pool.map(lambda group: precompile(group, pathlib.Path(folder)), large)))
-        runs = [pool.submit(read, entries[source], heavy.get(options(entries[source]), [])) for source in sorted(sources)]
-        for done in concurrent.futures.as_completed(runs):
+    with concurrent.futures.ThreadPoolExecutor(given.j) as pool:
+        for done in concurrent.futures.as_completed([pool.submit(read, entries[source]) for source in sorted(sources)]):
             file, status, text = done.result()
             if status:
                 failed += 1

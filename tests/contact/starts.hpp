@@ -20,6 +20,7 @@ inline double resting_gap(double stiffness, double tolerance, double load) {
   return 0.5 * (low + high);
 }
 
+/// Motion of a body that is not rotated and does not rotate.
 inline BodyMotion at(const Vec3& r, const Vec3& v = Vec3::Zero()) {
   BodyMotion m;
   m.r = r;

@@ -75,9 +75,8 @@ class CondensedNodes {
   const System* system_;
   NodeCondensation condensation_;
   NodeSystem nodes_;
-  std::vector<Vec6>
-      shares_;              ///< By body: its part of the condensed residual, or of that of merit().
-  std::vector<double> du_;  ///< Whole increments, three per node.
+  std::vector<Vec6> shares_;   ///< By body: of the condensed residual, or of that of merit().
+  std::vector<double> du_;     ///< Whole increments, three per node.
   std::vector<double> moved_;  ///< Applied part of them.
   double node_mass_ = 0.0;     ///< Mean of free nodes [kg].
   bool reuse_ = false;
