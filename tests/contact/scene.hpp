@@ -87,25 +87,6 @@ class Scene {
     place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
     contacts->add_shape({kGround, "floor", geometry::plane(place)});
   }
-  /// SPHERES_IN_A_BIN: n spheres of 0.1 m and 1 kg over a bin with walls.
-  void add_bin(int n, double side) {
-    const int row = static_cast<int>(std::floor((side - 0.21) / 0.22)) + 1;
-    const double x0 = -0.11 * (row - 1);
-    for (int i = 0; i < n; ++i) {
-      BodyMotion start;
-      start.r = {x0 + 0.22 * (i % row) + 0.005 * std::sin(12.9898 * i),
-                 x0 + 0.22 * ((i / row) % row) + 0.005 * std::sin(78.233 * i),
-                 0.12 + 0.22 * (i / (row * row)) + 0.005 * std::sin(37.719 * i)};
-      add_ball("sphere " + std::to_string(i), 0.1, 1.0, start);
-    }
-    add_floor();
-    for (const Vec3& inwards : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
-      geometry::ShapePlace place;
-      place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), inwards).toRotationMatrix();
-      place.origin = -0.5 * side * inwards;
-      contacts->add_shape({kGround, "wall", geometry::plane(place)});
-    }
-  }
   /// A bar on a body, moving with it. @returns its mass.
   double add_bar(int body, const Bar& bar) {
     const solids::Mesh mesh = solids::make_mesh(

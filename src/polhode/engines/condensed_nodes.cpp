@@ -140,13 +140,7 @@ std::string CondensedNodes::element_name(int element) const {
 }
 
 std::string CondensedNodes::worst_node() const {
-  if (worst_node_ < 0) return {};
-  const Nodes& nodes = system_->nodes();
-  for (int g = 0; g < nodes.group_count(); ++g)
-    for (int e = 0; e < nodes.group(g).size(); ++e)
-      for (int i : nodes.group(g).nodes(e))
-        if (i == worst_node_) return format("node {}, {}", i, nodes.element_name(g, e));
-  return format("node {}", worst_node_);
+  return worst_node_ < 0 ? std::string{} : system_->nodes().node_name(worst_node_);
 }
 
 }  // namespace polhode

@@ -296,7 +296,7 @@ class WholeTangent {
     if (i < bodies) return body_component(system_, i / 6, i % 6, of_body.first, of_body.second);
     if (i >= size())
       return format("{} {} of {}", of_body.first, "xyz"[(i - size()) % 3],
-                    node_name(system_.nodes(), (i - size()) / 3));
+                    system_.nodes().node_name((i - size()) / 3));
     for (const InteractionRef& ref : system_.interactions())
       if (i - bodies >= ref.first_row && i - bodies < ref.first_row + ref.rows)
         return format("{} {} of {} '{}'", of_row, i - bodies - ref.first_row + 1,

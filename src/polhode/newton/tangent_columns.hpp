@@ -97,8 +97,6 @@ class TangentColumns {
 /// the others.
 [[nodiscard]] std::string body_component(const System& system, int body, int component,
                                          const char* moved, const char* turned);
-/// Name of a node: "node 7 of element 3 of solid 'pad'".
-[[nodiscard]] std::string node_name(const Nodes& nodes, int node);
 /// Stride through `count` items that visits at most `most`.
 [[nodiscard]] int stride_of(int count, int most);
 /// Displaces a component of a body in the trial: 0 to 2 along an axis [m], 3 to 5 about it [-].

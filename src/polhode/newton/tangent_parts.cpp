@@ -242,8 +242,8 @@ void compare_group(const System& system, const State& state, Trial& trial, int g
         e.analytic,
         e.numeric,
         name,
-        format("force {} of {}", "xyz"[e.row % 3], node_name(nodes, e.row / 3)),
-        format("displacement {} of {}", "xyz"[e.column % 3], node_name(nodes, e.column / 3))};
+        format("force {} of {}", "xyz"[e.row % 3], nodes.node_name(e.row / 3)),
+        format("displacement {} of {}", "xyz"[e.column % 3], nodes.node_name(e.column / 3))};
   part.kind = name;
   const int kinks = columns.kinks();
   if (part.compared < part.of)
@@ -259,14 +259,6 @@ std::string body_component(const System& system, int body, int component, const 
                            const char* turned) {
   return format("{} {} of body {}", component < 3 ? moved : turned, "xyz"[component % 3],
                 quote(system.bodies()[static_cast<std::size_t>(body)].name));
-}
-
-std::string node_name(const Nodes& nodes, int node) {
-  for (int g = 0; g < nodes.group_count(); ++g)
-    for (int e = 0; e < nodes.group(g).size(); ++e)
-      for (const int i : nodes.group(g).nodes(e))
-        if (i == node) return format("node {}, {}", node, nodes.element_name(g, e));
-  return format("node {}", node);
 }
 
 int stride_of(int count, int most) { return std::max(1, (count + most - 1) / std::max(1, most)); }

@@ -158,7 +158,7 @@ void StaticNewton::measure(StaticStep& step) const {
   if (worst < bodies) return;
   for (int i = 0; i < system_->nodes().count(); ++i)
     for (int c = 0; c < 3; ++c)
-      if (matrix_.unknown(i, c) == worst) step.worst = node_text(i);
+      if (matrix_.unknown(i, c) == worst) step.worst = system_->nodes().node_name(i);
 }
 
 /// Whether every row is balanced, within the tolerance or to rounding.
@@ -256,7 +256,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
         ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
   }
   if (worst_node >= 0)
-    step.worst = node_text(worst_node);
+    step.worst = system_->nodes().node_name(worst_node);
   else if (worst_body >= 0)
     step.worst = format("body '{}'", system_->bodies()[worst_body].name);
   return most;
@@ -417,15 +417,6 @@ void StaticNewton::assemble_with_rates(double rate) {
   mixed_ = mixed;
   nodes_.set_static(true, mixed_);
   trial_.context.ga.c = 0.0;
-}
-
-std::string StaticNewton::node_text(int node) const {
-  const Nodes& nodes = system_->nodes();
-  for (int g = 0; g < nodes.group_count(); ++g)
-    for (int e = 0; e < nodes.group(g).size(); ++e)
-      for (int i : nodes.group(g).nodes(e))
-        if (i == node) return format("node {}, {}", node, nodes.element_name(g, e));
-  return format("node {}", node);
 }
 
 }  // namespace polhode

@@ -89,7 +89,6 @@ class StaticNewton {
   void commit(State& state, double load_factor);
   [[nodiscard]] std::string refused(StaticStep& step) const;
   void count_unstable(StaticStep& step);
-  [[nodiscard]] std::string node_text(int node) const;
 
   const System* system_;
   StaticOptions options_;

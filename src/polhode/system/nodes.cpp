@@ -59,6 +59,14 @@ std::string Nodes::element_name(int group, int element) const {
   return format("element {} of '{}' ({})", element, groups_[group]->name(), groups_[group]->kind());
 }
 
+std::string Nodes::node_name(int node) const {
+  for (int g = 0; g < group_count(); ++g)
+    for (int e = 0; e < group(g).size(); ++e)
+      for (const int i : group(g).nodes(e))
+        if (i == node) return format("node {}, {}", node, element_name(g, e));
+  return format("node {}", node);
+}
+
 bool Nodes::conservative() const {
   return prescribed_.empty() && std::all_of(groups_.begin(), groups_.end(),
                                             [](const auto& g) { return g->conservative(); });

@@ -89,6 +89,8 @@ class Nodes {
 
   /// Name of an element: "element 17 of solid 'pad'".
   [[nodiscard]] std::string element_name(int group, int element) const;
+  /// Name of a node with one of its elements: "node 8, element 17 of solid 'pad'".
+  [[nodiscard]] std::string node_name(int node) const;
 
  private:
   void check() const;
