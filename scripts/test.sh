@@ -17,6 +17,7 @@ threads=no
 [ "${1:-}" = --quick ] && quick=yes
 [ "${1:-}" = --sanitize ] && sanitize=yes
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 POLHODE_WERROR=ON
+export POLHODE_ASSERTIONS=1  # of every program that a test starts
 jobs=$(nproc)
 passed=0
 failed=0
@@ -68,6 +69,28 @@ tests() {
   fi
 }
 
+# The unit tests in one process for each processor: starting one for each test takes longer than they do.
+unit_tests_under_sanitizers() {
+  heading "unit tests under sanitizers"
+  local shard log processes=()
+  for ((shard = 0; shard < jobs; shard++)); do
+    (cd build/dev/tests && GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard ./polhode_unit_tests) \
+      >"$logs/sanitizers-$shard.log" 2>&1 &
+    processes+=($!)
+  done
+  for ((shard = 0; shard < jobs; shard++)); do
+    log=$logs/sanitizers-$shard.log
+    if wait "${processes[shard]}"; then
+      passed=$((passed + $(sed -nE 's/^\[  PASSED  \] ([0-9]+) tests?.*/\1/p' "$log")))
+    else
+      grep -aE '^\[  FAILED  \]|ERROR: |runtime error:|assertion failed' "$log" | head -50
+      tail -30 "$log"
+      failed=$((failed + 1))
+      failures+=("unit tests under sanitizers, see $log")
+    fi
+  done
+}
+
 configure_and_build() {
   local preset=$1
   shift
@@ -114,7 +137,7 @@ check "clang" python3 tools/check_clang.py build/release --library
 # fuzzer (tests/fuzz/run.sh) is read by the unit tests, so it is replayed here.
 if [ "$sanitize" = yes ]; then
   targets="polhode_cli polhode_unit_tests" check "sanitizer build" configure_and_build dev &&
-    tests "unit tests under sanitizers" build/dev -L unit
+    unit_tests_under_sanitizers
 fi
 
 finish

@@ -75,8 +75,7 @@ std::string statics_table(const RunSummary& s) {
   std::string text = table(rows);
   for (const std::string& motion : r.free_motions) text += format("  Free motion: {}.\n", motion);
   for (const std::string& cable : r.slack)
-    text +=
-        format("  {}: it has no tension. Shorten its free_length if it should be taut.\n", cable);
+    text += format("  {}. Shorten its free_length if it should be taut.\n", cable);
   if (r.relaxations > 0)
     text +=
         "  Slack cables: an equilibrium was found by relaxation, as Newton's method did not "
@@ -87,7 +86,7 @@ std::string statics_table(const RunSummary& s) {
                          "on another branch, {:.2g} times the size of the model away. Compute the "
                          "motion between them with type: dynamics.\n",
                          p.load_factor, p.motion.empty() ? "it ends" : p.motion, p.distance)
-                   : format("  Limit point or branch at load factor {:.6g}: {} there.\n",
+                   : format("  Limit point or bifurcation at load factor {:.6g}: {} there.\n",
                             p.load_factor, p.motion.empty() ? "stability changes" : p.motion);
   return text;
 }

@@ -195,8 +195,10 @@ TEST(MakeLinearSolver, ListsTheNamesWhenOneIsUnknown) {
     (void)linear::make_linear_solver("cholesky");
     FAIL() << "accepted";
   } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(),
-                 "linear_solver: 'cholesky' is not known. Use one of: block_lu, klu, sparse_lu.");
+    EXPECT_STREQ(
+        e.what(),
+        "analysis.solver: 'cholesky' is not known. Use one of: automatic, tree, block_lu, klu, "
+        "sparse_lu.");
   }
 }
 

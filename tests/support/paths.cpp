@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/assert.hpp>
 #include <support/paths.hpp>
 
 namespace polhode::test {
@@ -12,5 +13,8 @@ std::string cli_program() {
   return "";
 #endif
 }
+
+/// Assertions of every test.
+[[maybe_unused]] const bool kEvaluated = evaluates_assertions = true;
 
 }  // namespace polhode::test

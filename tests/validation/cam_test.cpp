@@ -137,7 +137,7 @@ output: {hdf5: false}
                                    "groove.yaml"));
   const RunSummary summary = s.run();
   EXPECT_EQ(summary.end, RunEnd::not_converged);
-  EXPECT_NE(summary.message.find("a point passed the end of its curve"), std::string::npos)
+  EXPECT_NE(summary.message.find("the point passed the end of the curve"), std::string::npos)
       << summary.message;
 }
 

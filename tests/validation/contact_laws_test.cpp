@@ -118,7 +118,7 @@ TEST(SpringLaws, LimitPenetrationToTheRoundingOfEdges) {
       EXPECT_LT(end.energy_drift, 1e-12);
       EXPECT_NEAR(s.point("a", Vec3::Zero()).acceleration.norm(), 0.0, 1e-3);
       EXPECT_TRUE(std::any_of(end.warnings.begin(), end.warnings.end(), [](const auto& warning) {
-        return warning.find("'crate' and 'a' overlapped") != std::string::npos;
+        return warning.find("'crate' and 'a' penetrated each other") != std::string::npos;
       }));
     }
   // A stiffness that carries the box, by four corners or more, without that warning.
@@ -127,7 +127,7 @@ TEST(SpringLaws, LimitPenetrationToTheRoundingOfEdges) {
   EXPECT_LT(s.body("a").r.z() - 0.1, -kG / 1e7);
   EXPECT_GT(s.body("a").r.z() - 0.1, -kG / 4e6 - 1e-8);
   for (const std::string& warning : end.warnings)
-    EXPECT_EQ(warning.find("overlapped"), std::string::npos) << warning;
+    EXPECT_EQ(warning.find("penetrated each other"), std::string::npos) << warning;
 }
 
 /// Depth at rest after a fall of 10 mm onto a flat height field while sliding: that of a plane at
@@ -151,7 +151,7 @@ TEST(SpringLaws, RestOnFlatTrianglesAsOnAPlane) {
   };
   const auto says_overlapped = [](const RunSummary& end) {
     return std::any_of(end.warnings.begin(), end.warnings.end(), [](const auto& warning) {
-      return warning.find("'field' and 'a' overlapped") != std::string::npos;
+      return warning.find("'field' and 'a' penetrated each other") != std::string::npos;
     });
   };
   for (const double cell : {0.2, 0.05, 0.01})

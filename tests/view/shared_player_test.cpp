@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/error.hpp>
 #include <polhode/view/shared_player.hpp>
 
 #include <cstdint>
@@ -43,6 +44,10 @@ std::string unpacked(const std::string& archive, std::size_t entry) {
   EXPECT_EQ(crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(size)),
             number_at(archive, entry + 16, 4));
   return bytes;
+}
+
+TEST(ZipArchive, RefusesMoreFilesThanItsFormHolds) {
+  EXPECT_THROW((void)zip_archive(std::vector<ZipEntry>(65536)), InputError);
 }
 
 TEST(ZipArchive, ReturnsItsFiles) {

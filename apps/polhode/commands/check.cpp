@@ -39,13 +39,14 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
   const StartReport& start = simulation.start_report();
   if (start.largest_move > 1e-6)
     list.push_back(
-        format("The start is not assembled: |g| is {:.2g}; body '{}' was moved by {:.2g} "
+        format("The start is not assembled: the residual of the joints is {:.2g}; body '{}' was "
+               "moved by {:.2g} "
                "of the mechanism's size. Check the positions of the joints.",
                start.position_residual, start.moved_body, start.largest_move));
   if (start.velocity_change > 1e-6)
     list.push_back(
-        format("The initial velocities violate the joints: |G v| is {:.2g}; they were corrected by "
-               "up to {:.2g}.",
+        format("The initial velocities violate the joints by {:.2g}; they were corrected by up to "
+               "{:.2g}. Give velocities that the joints allow.",
                start.velocity_residual, start.velocity_change));
   if (rank.redundant > 0) {
     list.push_back(
@@ -195,8 +196,7 @@ TangentReport tangents_of(Simulation& simulation, double at) {
                                         analysis.rho_inf, momentum_rate(analysis.momentum_rate));
   if (analysis.type != "dynamics")
     report.left_out.push_back(
-        format("terms of the tangent that only {} has; the tangent of a dynamic step was compared",
-               analysis.type));
+        format("terms of {} alone: the tangent of a dynamic step was compared", analysis.type));
   return report;
 }
 
@@ -279,16 +279,17 @@ int check(const CheckOptions& options) {
                       name_list(drives(simulation), 3))},
         {"constraint rows", format("{}", rank.rows),
          format("rank {}, {} redundant", rank.rank, rank.redundant)},
-        {"start, |g|", format("{:.1e}", start.position_residual),
-         format("assembling moved bodies by up to {:.1e}", start.largest_move)},
-        {"start, |G v|", format("{:.1e}", start.velocity_residual),
-         format("projection changed velocities by up to {:.1e}", start.velocity_change)},
+        {"position residual", format("{:.1e}", start.position_residual),
+         format("at the start; bodies were moved by up to {:.1e}", start.largest_move)},
+        {"velocity residual", format("{:.1e}", start.velocity_residual),
+         format("at the start; velocities were corrected by up to {:.1e}", start.velocity_change)},
         {"solver", simulation.summary().solver}};
     for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
       const SolidMap& solid = simulation.solids()[i];
       rows.push_back({format("solid {}", simulation.model().solids[i].name),
                       counted(static_cast<std::size_t>(solid.node_count()), "node", "nodes"),
-                      format("{} {}, {:.6g} kg, {:.6g} m^3, held by {}; smallest det {:.3g} m^3 in "
+                      format("{} {}, {:.6g} kg, {:.6g} m^3, held by {}; smallest Jacobian "
+                             "determinant {:.3g} m^3 in "
                              "element {}",
                              solid.plan.mesh.element_count(), name_list(solid.plan.elements),
                              solid.mass, solid.plan.volume, interfaces_text(simulation, i),

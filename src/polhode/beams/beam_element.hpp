@@ -60,7 +60,7 @@ class BeamElement : public InteractionItem {
   [[nodiscard]] double reach() const { return 0.5 * L_; }
   [[nodiscard]] bool always_queried() const { return true; }
   [[nodiscard]] const char* refusal() const {
-    return "bends by more than 2.5 rad between its ends: use more elements";
+    return "bends by more than 2.5 rad between its ends; use more elements";
   }
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;

@@ -12,7 +12,7 @@ void RunningCable::add_friction() {
   const std::string where = format("cables.{}.friction", spec_.name);
   const std::size_t pieces = spec_.nodes.size() - 1;
   if (pieces < 2)
-    throw InputError(where, "has no point between its ends",
+    throw InputError(where, "needs a point between the ends of the cable",
                      "Give three points or more, or leave it out");
   if (spec_.tension || spec_.muscle)
     throw InputError(where,

@@ -214,7 +214,7 @@ void check_material(const Model& model, const ContactSide& side, std::vector<Inp
   if (told.insert(side.material_path).second)
     faults.emplace_back(
         side.material_path, format("unknown contact material '{}'", *side.material),
-        names.empty() ? std::string("contacts.materials lists none")
+        names.empty() ? std::string("The model has none: give contacts.materials")
                       : did_you_mean(*side.material, names) + "Materials: " + name_list(names));
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/core/assert.hpp>
 
 namespace polhode::contact {
 
@@ -128,6 +129,7 @@ void ContactSet::find_candidates(double dt) {
     return !may_meet(a, b) || is_off(a, b);
   });
   std::sort(shape_pairs.begin(), shape_pairs.end());
+  POLHODE_ASSERT(is_strictly_ascending(shape_pairs));
 
   // Pairs of bodies are ordered; the ground is always second.
   const auto bodies = [&](int a, int b) {
@@ -149,6 +151,7 @@ void ContactSet::find_candidates(double dt) {
     const auto key = bodies(a, b);
     const auto pair = static_cast<int>(std::lower_bound(body_pairs.begin(), body_pairs.end(), key) -
                                        body_pairs.begin());
+    POLHODE_ASSERT(body_pairs[static_cast<std::size_t>(pair)] == key);
     for (std::size_t k = first; k < points.size(); ++k) {
       points[k].pair = pair;
       points[k].swapped = shapes_[points[k].a].body != key.first;

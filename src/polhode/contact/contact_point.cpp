@@ -4,6 +4,7 @@
 #include <polhode/contact/fading.hpp>
 #include <polhode/contact/point_weight.hpp>
 #include <polhode/contact_laws/bristle.hpp>
+#include <polhode/core/assert.hpp>
 
 namespace polhode::contact {
 
@@ -363,6 +364,7 @@ class Evaluation {
     r.gap_n1 = value(g_1.distance);
     r.normal_force = value(lambda_);
     r.normal = value(n_);
+    POLHODE_ASSERT(!(std::abs(r.normal.squaredNorm() - 1.0) > 1e-9));
     r.point = from_ + value(c_);
     r.after = data_.history.without_bristles();
     const Placement<double> end_a(a_, from_, 0), end_b(b_, from_, 6);

@@ -10,6 +10,7 @@
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/mouth_rim.hpp>
 #include <polhode/contact/tube.hpp>
+#include <polhode/core/assert.hpp>
 #include <polhode/geometry/nearest.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
@@ -308,6 +309,10 @@ void near_feature_pairs(const geometry::Shape& first, const geometry::Shape& sec
   back.round();
   std::sort(found.begin() + start, found.end(),
             [](const OrderedPair& x, const OrderedPair& y) { return x.key() < y.key(); });
+  POLHODE_ASSERT(
+      std::adjacent_find(found.begin() + start, found.end(), [](const auto& x, const auto& y) {
+        return x.key() == y.key();
+      }) == found.end());
 }
 
 }  // namespace polhode::contact

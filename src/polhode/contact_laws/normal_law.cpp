@@ -16,7 +16,7 @@ constexpr double kRestStiffness = 373.0;
 /// Slope of that barrier under its load, which is also the stiffness of the bristle: with a much
 /// softer bristle bodies rock, and Newton does not converge between sticking and sliding.
 constexpr double kRestSlope = 38.6;
-/// Stiffness of a linear spring that carries the load within the tolerance.
+/// Stiffness of a linear spring over load/tolerance: the load presses it by 4/3 of the tolerance.
 constexpr double kSoftStiffness = 0.75;
 /// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;

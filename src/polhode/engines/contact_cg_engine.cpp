@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/equations/line_search.hpp>
@@ -356,6 +357,7 @@ void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
 bool ContactCgEngine::solve(const Trial& trial) {
   if (searches_ == 0 && !cg_.set_bodies(own_)) return false;
   if (!acted_on_.empty() && !cg_.update_bodies(acted_on_, blocks_)) return false;
+  POLHODE_ASSERT(is_strictly_ascending(moving_));
   cg_.set_springs(acting_, moving_);
   cg_.set_ties(ties_);
   if (!rows_.empty() && !cg_.set_rows(rows_)) return false;

@@ -274,8 +274,8 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
   Iteration done;
   for (int again = 0; again < kMaxRounds; ++again) {
     if (!search(state, trial)) {
-      done.reason = worst_body_ >= 0 ? "a body turns too far in one step"
-                                     : "loads are too stiff for the step";
+      done.reason = worst_body_ >= 0 ? "a body rotates too far in one step"
+                                     : "the loads are too stiff for this step";
       done.worst_body = worst_body_;
       return done;
     }

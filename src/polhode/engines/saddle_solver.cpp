@@ -159,12 +159,9 @@ std::string describe_motion(const System& system, const SaddleMatrix& matrix, co
       node = i;
     }
   if (node < 0) return text;
-  for (int g = 0; g < nodes.group_count(); ++g)
-    for (int e = 0; e < nodes.group(g).size(); ++e)
-      for (int i : nodes.group(g).nodes(e))
-        if (i == node)
-          return format("'{}' moves freely, most at node {}", nodes.group(g).name(), node);
-  return format("node {} moves", node);
+  const NodePlace place = nodes.place_of(node);
+  if (place.group < 0) return format("node {} moves", node);
+  return format("'{}' moves, most at node {}", nodes.group(place.group).name(), place.number);
 }
 
 }  // namespace polhode

@@ -114,7 +114,7 @@ bool SparseEngine::prepare_nodes(const State& state, Trial& trial, bool factor, 
   if (!factor) return true;
   const bool regular = nodes_->factor(trial);
   if (nodes_->pair_changes() != pair_changes_) set_up();
-  if (!regular) done.reason = "the matrix of the solids is singular";
+  if (!regular) done.reason = "the tangent matrix of the solids is singular";
   return regular;
 }
 

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -70,6 +71,7 @@ class StepLength {
 template <class Apply, class Merit>
 bool search_along(const LineSearchRule& rule, double before, double part, Apply&& apply,
                   Merit&& merit) {
+  POLHODE_ASSERT(part >= 0.0 && part <= 1.0);
   StepLength length(rule, before, part);
   for (;;) {
     const double increment = apply(length.part());

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/equations/newton_system.hpp>
 
@@ -44,6 +45,7 @@ InteractionSweep::InteractionSweep(const System& system)
 
 InteractionSweep::InteractionSweep(const System& system, std::vector<int> interactions)
     : system_(&system), interactions_(std::move(interactions)) {
+  POLHODE_ASSERT(is_strictly_ascending(interactions_));
   for (int i = 0; i < static_cast<int>(interactions_.size()); ++i) {
     const InteractionRef& ref = system.interactions()[interactions_[i]];
     if (batches_.empty() || batches_.back().group != ref.group || batches_.back().count == kBatch)

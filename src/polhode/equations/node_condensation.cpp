@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/equations/node_condensation.hpp>
 
 namespace polhode {
@@ -102,7 +103,9 @@ void NodeCondensation::analyse() {
 
 int NodeCondensation::place_in(int piece, int body) const {
   const std::vector<int>& bodies = system_->nodes().pieces()[piece].bodies;
-  return static_cast<int>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
+  const auto place = std::lower_bound(bodies.begin(), bodies.end(), body);
+  POLHODE_ASSERT(place != bodies.end() && *place == body);
+  return static_cast<int>(place - bodies.begin());
 }
 
 void NodeCondensation::place_bonds(const Trial& trial) {

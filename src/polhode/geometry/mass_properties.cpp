@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/mass_properties.hpp>
@@ -34,6 +35,7 @@ PrincipalAxes principal_axes(const Mat3& inertia) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
   PrincipalAxes result{.moments = solver.eigenvalues(), .axes = solver.eigenvectors()};
   if (result.axes.determinant() < 0.0) result.axes.col(0) *= -1.0;
+  POLHODE_ASSERT(!result.moments.allFinite() || result.axes.isUnitary(1e-12));
   return result;
 }
 

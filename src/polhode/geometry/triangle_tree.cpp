@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/geometry/ray.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
@@ -25,6 +26,10 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& corners,
   order_.resize(triangles.size());
   std::iota(order_.begin(), order_.end(), 0);
   build(middles, 0, static_cast<int>(order_.size()));
+  POLHODE_ASSERT(std::accumulate(nodes_.begin(), nodes_.end(), std::size_t{0},
+                                 [](std::size_t n, const Node& node) {
+                                   return n + static_cast<std::size_t>(node.count);
+                                 }) == order_.size());
 }
 
 /// Splits the triangles along the longest side of the bounding box of their centres.

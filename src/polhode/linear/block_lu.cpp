@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/linear/block_lu.hpp>
 #include <polhode/linear/block_lu_kernels.hpp>
 #include <polhode/linear/block_lu_order.hpp>
@@ -126,6 +127,8 @@ void BlockLu::analyse(const KktTopology& topology) {
 }
 
 void BlockLu::put(const KktValues& values) {
+  POLHODE_ASSERT(values.diagonal.size() == body_place_.size());
+  POLHODE_ASSERT(values.pairs.size() == pair_place_.size());
   std::fill(values_.begin(), values_.end(), 0.0);
   double* const x = values_.data();
   const auto add_6x6 = [](double* to, int stride, const Mat6& K) {
@@ -163,6 +166,7 @@ bool BlockLu::factor(const KktValues& values) {
 }
 
 void BlockLu::solve(Vec& x) const {
+  POLHODE_ASSERT(x.size() == static_cast<Eigen::Index>(padded_of_unknown_.size()));
   for (std::size_t i = 0; i < padded_of_unknown_.size(); ++i)
     work_[padded_of_unknown_[i]] = x[static_cast<Eigen::Index>(i)];
   solve_blocks(plan_, values_.data(), pivots_.data(), work_.data(), fused_);
@@ -171,6 +175,7 @@ void BlockLu::solve(Vec& x) const {
 }
 
 void BlockLu::solve_transposed(Vec& x) const {
+  POLHODE_ASSERT(x.size() == static_cast<Eigen::Index>(padded_of_unknown_.size()));
   for (std::size_t i = 0; i < padded_of_unknown_.size(); ++i)
     work_[padded_of_unknown_[i]] = x[static_cast<Eigen::Index>(i)];
   solve_blocks_transposed(plan_, values_.data(), pivots_.data(), work_.data());

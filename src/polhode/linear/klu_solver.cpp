@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/linear/kkt_matrix.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
@@ -80,11 +81,13 @@ bool KluSolver::factor(const KktValues& values) {
 
 void KluSolver::solve(Vec& x) const {
   if (x.size() == 0) return;
+  POLHODE_ASSERT(numeric_ && x.size() == matrix_.size());
   klu_solve(symbolic_, numeric_, matrix_.size(), 1, x.data(), &common_);
 }
 
 void KluSolver::solve_transposed(Vec& x) const {
   if (x.size() == 0) return;
+  POLHODE_ASSERT(numeric_ && x.size() == matrix_.size());
   klu_tsolve(symbolic_, numeric_, matrix_.size(), 1, x.data(), &common_);
 }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <mutex>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/linear/mumps.hpp>
@@ -47,7 +48,7 @@ struct Mumps::Impl {
   std::vector<MUMPS_INT> rows, columns;
   std::vector<double> values;
   std::vector<MUMPS_INT> null_list;
-  bool started = false;
+  bool started = false, factored = false;
 
   explicit Impl(Symmetry symmetry) {
     static const Entry entry = load();
@@ -73,6 +74,7 @@ struct Mumps::Impl {
   MUMPS_INT& control(int k) const { return m.icntl[k - 1]; }
 
   void solve(double* x, int count, bool transposed) const {
+    POLHODE_ASSERT(factored);
     control(9) = transposed ? 0 : 1;
     m.rhs = x;
     m.nrhs = count;
@@ -80,8 +82,9 @@ struct Mumps::Impl {
     m.job = kSolve;
     call_alone(call, &m);
     if (m.infog[0] < 0)
-      throw SolveError(format("The equations of nodes were not solved (MUMPS {})", m.infog[0]),
-                       kTooLarge);
+      throw SolveError(
+          format("The tangent matrix of the nodes could not be solved (MUMPS {})", m.infog[0]),
+          kTooLarge);
   }
 };
 
@@ -91,9 +94,12 @@ Mumps::Mumps(Mumps&&) noexcept = default;
 
 void Mumps::analyse(int n, const std::vector<int>& rows, const std::vector<int>& columns) {
   Impl& s = *impl_;
+  POLHODE_ASSERT(rows.size() == columns.size());
+  s.factored = false;
   s.rows.resize(rows.size());
   s.columns.resize(columns.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
+    POLHODE_ASSERT(rows[k] >= 0 && rows[k] < n && columns[k] >= 0 && columns[k] < n);
     s.rows[k] = rows[k] + 1;
     s.columns[k] = columns[k] + 1;
   }
@@ -106,27 +112,30 @@ void Mumps::analyse(int n, const std::vector<int>& rows, const std::vector<int>&
   s.m.job = kAnalyse;
   call_alone(s.call, &s.m);
   if (s.m.infog[0] == kStructural)
-    throw SolveError("The equations of nodes are structurally singular",
-                     "Look for unconstrained nodes: polhode check names them");
+    throw SolveError("The tangent matrix of the nodes is singular by its pattern",
+                     "Look for nodes that belong to no element, and bodies that nothing holds");
   if (s.m.infog[0] < 0)
-    throw SolveError(format("The equations of nodes could not be analysed (MUMPS {}, {})",
+    throw SolveError(format("The tangent matrix of the nodes could not be analysed (MUMPS {}, {})",
                             s.m.infog[0], s.m.infog[1]),
                      kTooLarge);
 }
 
 bool Mumps::factor(const double* values) {
   Impl& s = *impl_;
+  s.factored = false;
   std::copy(values, values + s.values.size(), s.values.begin());
   for (int attempt = 0; attempt < 5; ++attempt) {
     s.m.job = kFactor;
     call_alone(s.call, &s.m);
     const int error = s.m.infog[0];
-    if (error >= 0) return true;
+    s.factored = error >= 0;
+    if (s.factored) return true;
     if (error == kSingular) return false;
     if (error != kWorkspaceTooSmall && error != kIntegersTooSmall)
-      throw SolveError(format("The equations of nodes could not be factored (MUMPS {}, {})", error,
-                              s.m.infog[1]),
-                       kTooLarge);
+      throw SolveError(
+          format("The tangent matrix of the nodes could not be factored (MUMPS {}, {})", error,
+                 s.m.infog[1]),
+          kTooLarge);
     s.control(14) *= 2;
   }
   return false;  // hardly any pivot is found, and the others are postponed without end

@@ -2,6 +2,7 @@
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/linear/kkt_matrix.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
@@ -54,10 +55,12 @@ bool SparseLu::factor(const KktValues& values) {
 }
 
 void SparseLu::solve(Vec& x) const {
+  POLHODE_ASSERT(x.size() == matrix_.size());
   if (x.size() > 0) x = lu_.solve(x).eval();
 }
 
 void SparseLu::solve_transposed(Vec& x) const {
+  POLHODE_ASSERT(x.size() == matrix_.size());
   if (x.size() > 0) x = lu_.transpose().solve(x).eval();
 }
 

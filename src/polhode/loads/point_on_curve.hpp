@@ -33,8 +33,8 @@ class PointOnCurve : public InteractionItem {
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] bool always_queried() const { return true; }
   [[nodiscard]] const char* refusal() const {
-    return "a point passed the end of its curve, or its roller is larger than the curvature radius "
-           "of the curve";
+    return "the point passed the end of the curve, or the roller is larger than the radius of "
+           "curvature";
   }
 
  private:

@@ -29,7 +29,9 @@ class Rolling : public InteractionItem {
   /// then the lowest.
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] bool always_queried() const { return circle_ > 0.0; }
-  [[nodiscard]] const char* refusal() const { return "a rolling wheel lies flat on its side"; }
+  [[nodiscard]] const char* refusal() const {
+    return "the wheel lies flat on its side, where its contact point is not defined";
+  }
 
  private:
   struct Place;

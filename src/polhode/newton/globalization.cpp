@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/assert.hpp>
 #include <polhode/newton/globalization.hpp>
 
 #include <algorithm>
@@ -95,6 +96,7 @@ void Globalization::limit_prediction() {
   double taken = 1.0;
   for (int repeat = 0; repeat < kMaxRepeats; ++repeat) {
     const double fits = admissible_part();
+    POLHODE_ASSERT(fits >= 0.0);
     if (fits >= 1.0) break;
     taken = repeat + 1 < kMaxRepeats ? taken * fits : 0.0;
     go(taken);
@@ -121,6 +123,7 @@ Iteration Globalization::limit(Iteration done, bool refactor) {
   for (int repeat = 0; done.solved && repeat < kMaxRepeats; ++repeat) {
     measure(to_);
     const double fits = admissible_part();
+    POLHODE_ASSERT(fits >= 0.0);
     if (fits >= 1.0) break;
     applied *= fits;
     go_back();
@@ -134,6 +137,7 @@ Iteration Globalization::limit(Iteration done, bool refactor) {
 void Globalization::undo_growth(double increment, double last) {
   undone_ = large_ && increment > kGrowth * last && damping_ >= kLeastDamping;
   damping_ = undone_ ? 0.5 * damping_ : std::min(1.0, 2.0 * damping_);
+  POLHODE_ASSERT(damping_ > 0.0 && damping_ <= 1.0);
   if (undone_) go_back();
 }
 

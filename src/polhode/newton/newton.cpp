@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <polhode/core/format.hpp>
 #include <polhode/newton/globalization.hpp>
@@ -33,6 +34,10 @@ constexpr double kLeaves = 1.5;
 constexpr double kRoundOffBelow = 1e-2;
 /// Contraction rate above which reused factors are renewed.
 constexpr double kSlowContraction = 0.05;
+
+/// Angle of a rotation from the length of its Cayley vector [deg].
+double degrees_of(double length) { return 360.0 / std::numbers::pi * std::atan(0.5 * length); }
+
 /// Factor on the iteration limit once an increment was below the tolerance: near a singular
 /// position multipliers of redundant rows converge slowly by proximal iterations.
 constexpr int kMoreWhenClose = 3;
@@ -108,7 +113,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
                    e > options.tolerance
                ? slow + 1
                : 0;
-    if (slow >= 2) return fail("contracts too slowly"), report;
+    if (slow >= 2) return fail("converges too slowly"), report;
 
     iterated_again = close;
     close = e < options.tolerance;  // the increment has to stay below
@@ -133,10 +138,12 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (stalled == 0) least = e;
     if (iterated_again && !kept && remainder > left && stalled < kStalled) continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
-      return fail("contracts too slowly"), report;
+      return fail("converges too slowly"), report;
     if (done.rotation > options.max_rotation) {
-      fail(format("turns by |Θ| = {:.3g} in one step, more than max_step_rotation = {:.3g}",
-                  done.rotation, options.max_rotation));
+      fail(
+          format("a body rotates by {:.3g} deg in one step, more than the {:.3g} deg of "
+                 "max_step_rotation",
+                 degrees_of(done.rotation), degrees_of(options.max_rotation)));
       return report;
     }
     report.constraints = engine.check(state, trial);

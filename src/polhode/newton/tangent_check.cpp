@@ -156,7 +156,7 @@ class WholeTangent {
     if (nodes_) {
       (void)nodes_->assemble(state_, trial_, true, still_);
       if (!condensation_->factor(*nodes_, trial_)) {
-        fault_ = "the whole tangent, as the matrix of the nodes is singular";
+        fault_ = "the assembled tangent, as the matrix of the nodes is singular";
         return;
       }
     }
@@ -333,13 +333,13 @@ void compare_whole(const System& system, WholeTangent& whole, int most_bodies,
   const auto left = [&](int moved, int of, const char* what) {
     if (moved < of)
       report.left_out.push_back(
-          format("the assembled columns of {} of {} {}", of - moved, of, what));
+          format("{} of {} {} in the assembled tangent", of - moved, of, what));
   };
   left(report.bodies_moved, bodies, "bodies");
   left(report.nodes_moved, static_cast<int>(free.size()), "nodes");
   if (whole.kinks() > 0)
-    report.left_out.push_back(
-        format("{} assembled columns at a kink, where one side was compared", whole.kinks()));
+    report.left_out.push_back(format(
+        "one side of {} columns of the assembled tangent, at a kink of a force", whole.kinks()));
   report.parts.push_back({kAssembled, report.bodies_moved + report.nodes_moved,
                           bodies + static_cast<int>(free.size()), whole.worst()});
 }
@@ -349,10 +349,9 @@ void compare_whole(const System& system, WholeTangent& whole, int most_bodies,
 std::string TangentReport::text() const {
   if (worst.row.empty()) return "the tangent agrees exactly with differences of the residual";
   return format(
-      "largest difference between the tangent{} and differences of the residual: {:.1e} of its "
-      "row, {} by {}: {:.9g} against {:.9g}",
-      worst.of.empty() ? "" : " of " + worst.of, worst.error, worst.row, worst.column,
-      worst.analytic, worst.numeric);
+      "{}the derivative of {} by {} is {:.9g}, and {:.9g} by differences ({:.1e} of its row)",
+      worst.of.empty() ? "" : worst.of + ": ", worst.row, worst.column, worst.analytic,
+      worst.numeric, worst.error);
 }
 
 TangentReport check_tangents(const System& system, const State& state, double dt, double rho_inf,

@@ -81,8 +81,7 @@ void finish(TangentPart part, int kinks, TangentReport& report) {
         format("{} of {} of kind '{}'", part.of - part.compared, part.of, part.kind));
   if (kinks > 0)
     report.left_out.push_back(
-        format("{} columns of kind '{}' at a kink of the force, where one side was compared", kinks,
-               part.kind));
+        format("one side of {} columns of kind '{}', at a kink of the force", kinks, part.kind));
   report.parts.push_back(std::move(part));
 }
 

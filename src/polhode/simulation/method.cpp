@@ -55,8 +55,8 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   if (!a.order) {
     if (!a.tolerance || a.step || system.contacts()) return 2;
     const int order = composable ? 6 : 2;
-    narration += format("The tolerance of {:g} chose order {} with automatic steps: {}.\n",
-                        *a.tolerance, order,
+    narration += format("Order {} with automatic steps, for the tolerance of {:g}: {}.\n", order,
+                        *a.tolerance,
                         composable ? "nothing in the model dissipates"
                                    : "higher orders need rho_inf = 1 and a model without dampers");
     return order;
@@ -76,7 +76,7 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
     refuse("the model has dampers: stages backward in time would add energy",
            "Use order: 2 for this model");
   if (a.momentum_rate != "momentum")
-    refuse("only the momentum form of the rate is symmetric in time",
+    refuse("only the step with momentum_rate: momentum is symmetric in time",
            "Set momentum_rate: momentum, or order: 2");
   if (order == 4 && !a.step)
     refuse("automatic steps exist for orders 2, 6 and 8", "Give a step, or use order: 6");
@@ -115,7 +115,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   if (a.solver == "tree" && !tree_fits)
     throw InputError(
         "analysis.solver",
-        "'tree' supports the momentum form of the rate and a new jacobian in every iteration only",
+        "'tree' needs momentum_rate: momentum, and jacobian: automatic or every_iteration",
         "Use solver: block_lu with this momentum_rate or jacobian");
   if (NonsmoothEngine::has_impulses(system)) {
     narration += "Solver: impulses by projected Gauss-Seidel, as contacts are non-smooth.\n";
@@ -157,7 +157,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   auto sparse = std::make_unique<SparseEngine>(system, solver, rate);
   if (tree->flops() < kTreeAdvantage * sparse->solver().factor_flops()) return tree;
   narration += elastic ? "Solver: block LU, as beams or cables connect bodies.\n"
-                       : format("Solver: block LU, as up to {} loops are open at one body.\n",
+                       : format("Solver: block LU, as up to {} kinematic loops pass one body.\n",
                                 tree->plan().most_open);
   return sparse;
 }

@@ -164,10 +164,10 @@ RunSummary Simulation::summary() const {
                  "right, forces and contact times are not. Take shorter steps",
                  short_ones));
     if (const ContactStatistics::NearFloor deep = s.contacts.near_floor(); deep.steps > 0)
-      r.warnings.push_back(
-          format("contacts: '{}' and '{}' overlapped in {} steps by nearly the radius of their "
-                 "rounding, where contact is stiffer than stated. Give a larger stiffness",
-                 deep.first_shape, deep.second_shape, deep.steps));
+      r.warnings.push_back(format(
+          "contacts: '{}' and '{}' penetrated each other in {} steps so far that the contact "
+          "was stiffer than given. Give a larger stiffness",
+          deep.first_shape, deep.second_shape, deep.steps));
     if (s.model.contacts.nonsmooth()) {
       const ImpulseFigures search = s.contacts.impulse_figures();
       r.contacts->sweeps = {search.sweeps / static_cast<double>(std::max<std::int64_t>(l.steps, 1)),

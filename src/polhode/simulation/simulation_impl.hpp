@@ -301,7 +301,7 @@ struct Simulation::Impl {
                        format("cannot be assembled: {} contradict one another{}",
                               names.empty() ? "the joints" : names,
                               format(" (largest residual {:.2g})", r.position_residual)),
-                       "Check positions and axes of these joints; 'polhode check' lists residuals");
+                       "Check positions and axes of these joints");
     }
     for (std::size_t i = 0; i < model.joints.size(); ++i) refuse_outside_limits(i);
     bool to_assemble = false;

@@ -209,8 +209,10 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
     if (ref.rows == 0 || x.isZero(0.0)) continue;
     m.K().times(x, rates);
     if (rates.segment(m.n() + ref.first_row, ref.rows).norm() > kTurned * x.norm())
-      report.warnings.push_back(format("{} '{}' does not allow the given angular velocities",
-                                       system.group(ref.group).kind(), system.name(ref)));
+      report.warnings.push_back(
+          format("{} '{}' does not allow the given angular velocities. Give its bodies angular "
+                 "velocities that differ only about its free axes",
+                 system.group(ref.group).kind(), system.name(ref)));
   }
   ModalMatrices later(system, turned, options);
   const auto apart = [&](const SaddleMatrix& A, const SaddleMatrix& B) {
@@ -309,8 +311,10 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
     for (Mode& mode : report.modes) {
       mode.residual = residual_of(m, sigma, mode, (mode.rigid ? 1.0 : 1e-4) * sigma * sigma);
       if (mode.residual > kResidual)
-        report.warnings.push_back(format("the mode of {:.6g} Hz is accurate to {:.1g} only",
-                                         mode.frequency, mode.residual));
+        report.warnings.push_back(format(
+            "the mode of {:.6g} Hz is accurate to {:.1g} only. Look for bodies with almost no "
+            "mass or inertia",
+            mode.frequency, mode.residual));
     }
   return report;
 }

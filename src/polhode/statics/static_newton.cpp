@@ -367,8 +367,8 @@ std::string StaticNewton::refused(StaticStep& step) const {
     const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row,
                         work_.history.data() + ref.first_history};
     if (group.acceptable(ref.item, pair)) continue;
-    step.worst = format("{} '{}'", group.kind(), system_->name(ref));
-    return group.traits(ref.item).refusal;
+    step.worst.clear();
+    return format("{} '{}': {}", group.kind(), system_->name(ref), group.traits(ref.item).refusal);
   }
   return {};
 }

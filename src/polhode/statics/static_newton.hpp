@@ -25,7 +25,7 @@ struct StaticOptions {
 /// Motion with the smallest stiffness at an equilibrium.
 struct SoftestMotion {
   double stiffness = 0.0;  ///< xᵀKx/xᵀx; negative where the equilibrium is unstable [N/m].
-  std::string text;        ///< "'leg' moves freely, most at node 4"; empty: not found.
+  std::string text;        ///< "'leg' moves, most at node 4"; empty: not found.
 };
 
 /// Newton's method for the equilibrium of bodies, joints, springs, beams and solids: one matrix of

@@ -95,7 +95,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
     }
   }
   step.converged = false;
-  step.reason = "relaxation has not come to rest";
+  step.reason = "dynamic relaxation has not converged";
   return leave(step);
 }
 

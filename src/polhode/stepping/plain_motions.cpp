@@ -82,7 +82,7 @@ std::vector<Part> parts_of(const System& system) {
     if (several && parts.size() == 1)
       part.name = "the whole model";
     else if (several)
-      part.name += " with all that hangs on it";
+      part.name += " and everything connected to it";
   }
   return parts;
 }

@@ -3,12 +3,14 @@
 #include <chrono>
 #include <cmath>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/engines/tree_engine.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/kernels/denormals.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/stored_rates.hpp>
+#include <polhode/system/regular_state.hpp>
 
 namespace polhode {
 
@@ -105,6 +107,7 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
 
 NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& options,
                               Predictor predictor) {
+  POLHODE_ASSERT(std::isfinite(dt) && dt != 0.0);  // stages of compositions also go back
   [[maybe_unused]] const DenormalsAreZero tiny_is_zero;
   const Clock::time_point t0 = Clock::now();
   trial_.context.t_n = state.t;
@@ -163,6 +166,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.t += dt;
   state.dt_last = dt;
   state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);
+  POLHODE_ASSERT(is_regular(state));
   ledger_.after_commit(state, trial_);
   seconds_[2] += seconds(t2, Clock::now());
   return report;
@@ -174,7 +178,7 @@ bool SingleStep::refused(const State& state, NewtonReport& report) const {
     const InteractionGroup& group = system_->group(ref.group);
     if (group.acceptable(ref.item, view.step())) return false;
     report.reason =
-        format("{}: {} '{}'", group.traits(ref.item).refusal, group.kind(), system_->name(ref));
+        format("{} '{}': {}", group.kind(), system_->name(ref), group.traits(ref.item).refusal);
     report.worst.clear();
     return true;
   };

@@ -442,9 +442,10 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       wanted = std::max(wanted, least_step());
     } else {
       report.message = format(
-          "{} Steps down to {:.2g} s were tried. Possible causes: a position that the joints "
-          "cannot leave, {}a load or spring that is far too stiff, or masses that differ by many "
-          "orders. 'polhode check --tangents' checks the equations.",
+          "{} Steps down to {:.2g} s were tried. Look for a singular position of the joints, "
+          "{}very "
+          "stiff loads or springs, and masses that differ by many orders of magnitude. 'polhode "
+          "check --tangents' compares the derivatives of all forces.",
           report.newton.text(), least_step(), locking_joint(system));
       return report;
     }

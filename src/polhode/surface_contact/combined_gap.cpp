@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/surface_contact/combined_gap.hpp>
 
 namespace polhode::surface_contact {
 
 SurfaceGap combined_gap(const contact::NormalLaw& law,
                         std::vector<std::pair<SurfaceGap, int>>& near, const SurfaceGap& nearest) {
+  POLHODE_ASSERT(!near.empty());
   if (near.size() == 1) return near.front().first;
   std::stable_sort(near.begin(), near.end(),
                    [](const auto& a, const auto& b) { return a.first.value < b.first.value; });

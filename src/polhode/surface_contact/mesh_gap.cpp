@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/assert.hpp>
 #include <polhode/surface_contact/mesh_gap.hpp>
 
 namespace polhode::surface_contact {
@@ -85,6 +86,7 @@ std::vector<Feature> features(const std::vector<TriangleAt>& near) {
 /// @eq{surface-feature-sum} @eq{surface-feature-holes}
 MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& law,
                  double centre) {
+  POLHODE_ASSERT(!near.empty());
   const auto nearest = [&] {
     MeshGap best = MeshGap::of(near.front().triangle, nearest_of_triangle(near.front().x));
     for (const TriangleAt& t : near) {

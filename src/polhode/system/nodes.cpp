@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/system/changing_sparsity.hpp>
@@ -42,15 +43,18 @@ bool has_mass(const ElementGroup& g) {
 }  // namespace
 
 int Nodes::add(const NodeData& node) {
+  POLHODE_ASSERT(first_history_.empty());  // before finish()
   data_.push_back(node);
   return count() - 1;
 }
 
 void Nodes::prescribe(int node, int component, TimeFunctionPtr displacement) {
+  POLHODE_ASSERT(first_history_.empty());
   prescribed_.push_back({node, component, std::move(displacement)});
 }
 
 int Nodes::add_elements(std::unique_ptr<ElementGroup> elements) {
+  POLHODE_ASSERT(first_history_.empty() && elements);
   groups_.push_back(std::move(elements));
   return group_count() - 1;
 }
@@ -59,12 +63,26 @@ std::string Nodes::element_name(int group, int element) const {
   return format("element {} of '{}' ({})", element, groups_[group]->name(), groups_[group]->kind());
 }
 
-std::string Nodes::node_name(int node) const {
-  for (int g = 0; g < group_count(); ++g)
-    for (int e = 0; e < group(g).size(); ++e)
+NodePlace Nodes::place_of(int node) const {
+  NodePlace place;
+  for (int g = 0; g < group_count() && place.group < 0; ++g)
+    for (int e = 0; e < group(g).size() && place.group < 0; ++e)
       for (const int i : group(g).nodes(e))
-        if (i == node) return format("node {}, {}", node, element_name(g, e));
-  return format("node {}", node);
+        if (i == node) place = {g, e, node};
+  if (place.group < 0) return place;
+  int first = node;
+  for (int g = 0; g < group_count(); ++g)
+    if (group(g).name() == group(place.group).name())
+      for (int e = 0; e < group(g).size(); ++e)
+        for (const int i : group(g).nodes(e)) first = std::min(first, i);
+  place.number -= first;
+  return place;
+}
+
+std::string Nodes::node_name(int node) const {
+  const NodePlace place = place_of(node);
+  if (place.group < 0) return format("node {}", node);
+  return format("node {}, {}", place.number, element_name(place.group, place.element));
 }
 
 bool Nodes::conservative() const {
@@ -161,7 +179,9 @@ void Nodes::build_graph() {
         for (int j : g.nodes(e)) {
           const auto first = column_.begin() + row_start_[i],
                      last = column_.begin() + row_start_[i + 1];
-          slots_[k].push_back(static_cast<int>(std::lower_bound(first, last, j) - column_.begin()));
+          const auto slot = std::lower_bound(first, last, j);
+          POLHODE_ASSERT(slot != last && *slot == j);
+          slots_[k].push_back(static_cast<int>(slot - column_.begin()));
         }
   }
 }

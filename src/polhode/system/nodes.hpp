@@ -36,6 +36,12 @@ struct ConnectedComponent {
   bool turns = true;
 };
 
+/// Place of a node for messages: an element that has it, and its number among the nodes of the
+/// elements of that name. All −1 if no element has it.
+struct NodePlace {
+  int group = -1, element = -1, number = -1;
+};
+
 /// Nodes of all deformable solids: their bonds, their graph and their masses. Nodes have no
 /// rotation; a bonded node moves as x = r + Λ Z with its body. @eq{eq:rbm-position}
 class Nodes {
@@ -89,7 +95,9 @@ class Nodes {
 
   /// Name of an element: "element 17 of solid 'pad'".
   [[nodiscard]] std::string element_name(int group, int element) const;
-  /// Name of a node with one of its elements: "node 8, element 17 of solid 'pad'".
+  /// Place of a node, for messages.
+  [[nodiscard]] NodePlace place_of(int node) const;
+  /// Name of a node with one of its elements: "node 8, element 17 of 'solids.pad' (hex8)".
   [[nodiscard]] std::string node_name(int node) const;
 
  private:

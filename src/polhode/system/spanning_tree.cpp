@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/system/spanning_tree.hpp>
 #include <polhode/system/state.hpp>
 
@@ -16,6 +17,17 @@ struct Edge {
   int other;        ///< The body at the far end.
   bool as_child_b;  ///< The far end is b, so no reversal is needed.
 };
+
+/// Whether every body comes after its parent.
+bool has_parents_first(const SpanningTree& tree) {
+  std::vector<char> seen(tree.order.size(), 0);
+  for (const int body : tree.order) {
+    const int parent = tree.link[body].parent;
+    if (parent != kGround && !seen[parent]) return false;
+    seen[body] = 1;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -109,6 +121,7 @@ SpanningTree build_spanning_tree(int bodies, int interactions,
     tree.chunks.push_back({first_run, static_cast<int>(tree.runs.size()), first, last});
   }
   tree.slots = static_cast<int>(tree.body_of_slot.size());
+  POLHODE_ASSERT(has_parents_first(tree));
   return tree;
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/system/system.hpp>
@@ -11,6 +12,7 @@
 namespace polhode {
 
 int System::add_body(BodyData body, const BodyMotion& start) {
+  POLHODE_ASSERT(!finished_);
   bodies_.push_back(std::move(body));
   start_.push_back(start);
   return body_count() - 1;
@@ -32,6 +34,8 @@ bool System::is_off(const State& state, int interaction) const {
 }
 
 void System::finish() {
+  POLHODE_ASSERT(!finished_);
+  finished_ = true;
   const int n = body_count();
   std::vector<TreeCandidate> candidates;
   std::vector<int> shapes;

@@ -147,6 +147,7 @@ class System {
   bool conservative_ = true, dissipates_ = false, stiff_ = false, only_constraints_ = true;
   std::vector<int> barriers_, drives_;
   int memory_size_ = 0;
+  bool finished_ = false;
 };
 
 template <class Item>

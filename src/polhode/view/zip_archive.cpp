@@ -7,6 +7,8 @@
 
 #include <zlib.h>
 
+#include <polhode/core/error.hpp>
+
 namespace polhode {
 
 namespace {
@@ -65,15 +67,15 @@ void add_description(LittleEndian& out, const ZipEntry& entry, std::size_t packe
 
 std::string zip_archive(std::span<const ZipEntry> entries) {
   constexpr std::size_t kMax = std::numeric_limits<std::uint32_t>::max();
-  const char* too_large = "zip_archive: more than a plain archive can hold";
-  if (entries.size() > std::numeric_limits<std::uint16_t>::max())
-    throw std::runtime_error(too_large);
+  const InputError too_large("the results", "exceed the 4 GB or 65535 files of a zip archive",
+                             "Name fewer results, or take fewer frames");
+  if (entries.size() > std::numeric_limits<std::uint16_t>::max()) throw too_large;
   LittleEndian archive, directory;
   for (const ZipEntry& entry : entries) {
-    if (entry.bytes.size() > kMax) throw std::runtime_error(too_large);
+    if (entry.bytes.size() > kMax) throw too_large;
     const std::string packed = deflated(entry.bytes);
     const std::size_t at = archive.size();
-    if (at + packed.size() > kMax) throw std::runtime_error(too_large);
+    if (at + packed.size() > kMax) throw too_large;
     archive.u32(0x04034b50);
     add_description(archive, entry, packed.size());
     archive.text(entry.name).text(packed);

@@ -14,7 +14,7 @@ struct ZipEntry {
 
 /// Archive of files, deflated (PKWARE, .ZIP File Format Specification 6.3). All are dated 1980, so
 /// that the same files give the same bytes.
-/// @throws std::runtime_error above 4 GB or 65535 files, which this form cannot hold.
+/// @throws InputError above 4 GB or 65535 files, which this form cannot hold.
 [[nodiscard]] std::string zip_archive(std::span<const ZipEntry> entries);
 
 }  // namespace polhode

@@ -288,7 +288,7 @@ class ContactsReader {
     for (const ContactMaterialSpec& m : contacts_.materials) names.push_back(m.name);
     context_.diagnostics.add(
         place, path, "unknown contact material " + quote(name),
-        did_you_mean(name, names) + (names.empty() ? "contacts.materials lists none."
+        did_you_mean(name, names) + (names.empty() ? "The model has none: give contacts.materials."
                                                    : sentence("Materials: " + name_list(names))));
   }
 

@@ -353,7 +353,7 @@ class LoadReader {
         if (force * v >= -1e-12 * std::abs(v)) continue;
         section_.fault(
             l.name, format("is {} at v = {}: a damper must not add energy", shown(force), shown(v)),
-            "Give a force of the sign of v.");
+            "Give a force with the sign of v.");
         return;
       }
   }

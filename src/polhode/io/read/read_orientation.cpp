@@ -24,7 +24,7 @@ std::optional<Quat> from_quaternion(ReadContext& context, const SourceNode& node
   const Quat quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
   if (std::abs(quaternion.norm() - 1.0) > kPrinted) {
     context.fault(node, path, "has length " + shown(quaternion.norm()) + " instead of 1",
-                  "Give Unit quaternion [w, x, y, z].");
+                  "Give a unit quaternion [w, x, y, z].");
     return std::nullopt;
   }
   return quaternion.normalized();

@@ -94,8 +94,8 @@ const FieldTable& analysis_fields() {
            .kind = kNumber,
            .meaning = "Largest scaled increment at convergence; with the conjugate gradient solver "
                       "for contacts the largest residual over the weight of a body.",
-           .standard = "1e-5; 1e-7 at orders 6 and 8; 1e-6 with solids and with that solver; 1e-12 "
-                       "with other contacts",
+           .standard = "1e-5; 1e-7 at orders 6 and 8; 1e-6 with solids or the conjugate gradient "
+                       "solver; 1e-12 with contacts, 1e-9 with contacts of solids, 1e-7 of cables",
            .range = {0.0, 1e-2, true},
            .member = &AnalysisSpec::newton_tolerance,
            .may_change = true},

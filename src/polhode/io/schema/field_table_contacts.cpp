@@ -72,8 +72,8 @@ std::vector<Field> law_fields() {
        .kind = kNumber,
        .dimension = kForce,
        .meaning = "Normal force from which the stiffness is chosen: the barrier carries it at a "
-                  "twentieth of gap_tolerance, springs at gap_tolerance.",
-       .standard = "the weight of the lighter body",
+                  "twentieth of gap_tolerance, springs at about gap_tolerance.",
+       .standard = "the weight of the reduced mass; with linear and hertz, of the heaviest body",
        .range = kPositive,
        .member = &ContactLawSpec::reference_load},
       {.name = "reference_pressure",

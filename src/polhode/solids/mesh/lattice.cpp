@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/solids/mesh/coincident.hpp>
@@ -51,6 +52,8 @@ std::vector<double> with_middles(const std::vector<double>& ends) {
 void add_patch(const Patch& patch, std::vector<Vec3>& points, std::vector<Hex27>& cells) {
   const auto us = with_middles(patch.ends[0]), vs = with_middles(patch.ends[1]),
              ws = with_middles(patch.ends[2]);
+  POLHODE_ASSERT(is_strictly_ascending(us) && is_strictly_ascending(vs) &&
+                 is_strictly_ascending(ws));
   const int first = static_cast<int>(points.size());
   const int nu = static_cast<int>(us.size()), nv = static_cast<int>(vs.size()),
             nw = static_cast<int>(ws.size());

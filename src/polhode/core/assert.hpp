@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Assertions of internal invariants, which no model and no file can break.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+
+namespace polhode {
+
+/// Whether assertions are evaluated. Off by default; a program sets it before it starts threads, as
+/// the tests do, and the command line if the environment has POLHODE_ASSERTIONS.
+extern bool evaluates_assertions;
+
+/// Failure of an assertion: writes its text, file and line to stderr and aborts the program.
+[[noreturn]] void assertion_failed(const char* text, const char* file, int line);
+
+/// Whether every element of a range is larger than the one before.
+template <class Range>
+[[nodiscard]] bool is_strictly_ascending(const Range& range) {
+  return std::adjacent_find(range.begin(), range.end(), std::greater_equal<>()) == range.end();
+}
+
+}  // namespace polhode
+
+#define POLHODE_ASSERT(...)                          \
+  (!::polhode::evaluates_assertions || (__VA_ARGS__) \
+       ? static_cast<void>(0)                        \
+       : ::polhode::assertion_failed(#__VA_ARGS__, __FILE__, __LINE__))
