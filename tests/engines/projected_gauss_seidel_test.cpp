@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
 #include <gtest/gtest.h>
 
-#include <polhode/engines/sphere_gauss_seidel.hpp>
+#include <polhode/engines/compact_gauss_seidel.hpp>
 #include <polhode/math/hat.hpp>
 
 namespace polhode::projected_gauss_seidel_tests {
@@ -68,23 +70,32 @@ TEST(ProjectedGaussSeidel, SatisfiesComplementarityAndCoulombsLaw) {
   }
 }
 
-TEST(SphereGaussSeidel, AgreesWithTheGeneralSweeps) {
-  ProjectedGaussSeidel s = pile(true, 0.3), copy = s;
-  ASSERT_TRUE(SphereGaussSeidel::suit(s));
-  SphereGaussSeidel balls;
-  balls.take(s);
-  for (int k = 0; k < 9; ++k) {
-    const double change = s.sweep(k % 2 == 1);
-    EXPECT_NEAR(balls.sweep(k % 2 == 1), change, 1e-12 * change + 1e-28);
+/// Piles of balls, and of balls with one to three other bodies among them.
+TEST(CompactGaussSeidel, AgreesWithTheGeneralSweeps) {
+  for (const std::vector<int>& other : {std::vector<int>{}, {3}, {0, 4}, {0, 1, 3}}) {
+    ProjectedGaussSeidel s = pile(true, 0.3);
+    for (const int b : other) s.bodies[b].inverse_inertia.diagonal() += Vec3(0.3, 0.0, 0.9);
+    s.points[1].arm_a = {0.1, 0.0, -1.0};  // not central, between round bodies
+    s.prepare();
+    ProjectedGaussSeidel copy = s;
+    ASSERT_TRUE(CompactGaussSeidel::suit(s));
+    CompactGaussSeidel compact;
+    compact.take(copy);
+    for (int k = 0; k < 9; ++k) {
+      const double change = s.sweep(k % 2 == 1);
+      EXPECT_NEAR(compact.sweep(k % 2 == 1), change, 1e-12 * change + 1e-28);
+    }
+    compact.give_back();
+    for (std::size_t k = 0; k < s.points.size(); ++k) {
+      EXPECT_NEAR(copy.points[k].normal_impulse, s.points[k].normal_impulse, 1e-13);
+      EXPECT_LT((copy.points[k].friction_impulse - s.points[k].friction_impulse).norm(), 1e-13);
+    }
+    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+      EXPECT_LT((copy.bodies[b].v - s.bodies[b].v).norm(), 1e-13);
+      EXPECT_LT((copy.bodies[b].w - s.bodies[b].w).norm(), 1e-13);
+    }
   }
-  balls.give_back(copy);
-  for (std::size_t k = 0; k < s.points.size(); ++k) {
-    EXPECT_NEAR(copy.points[k].normal_impulse, s.points[k].normal_impulse, 1e-13);
-    EXPECT_LT((copy.points[k].friction_impulse - s.points[k].friction_impulse).norm(), 1e-13);
-  }
-  EXPECT_FALSE(SphereGaussSeidel::suit(pile(false, 0.3)));
-  s.points[0].arm_a = {0.1, 0.0, -1.0};
-  EXPECT_FALSE(SphereGaussSeidel::suit(s));
+  EXPECT_FALSE(CompactGaussSeidel::suit(pile(false, 0.3)));
 }
 
 }  // namespace

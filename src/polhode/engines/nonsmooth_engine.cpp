@@ -212,23 +212,24 @@ bool NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
   bool exact = false;
   double first_change = -1.0;
-  const bool balls = SphereGaussSeidel::suit(sweeps_);
+  const bool compact = CompactGaussSeidel::suit(sweeps_);
   const auto run = [&](int most) {
-    balls ? balls_.take(sweeps_) : sweeps_.prepare();
+    compact ? compact_.take(sweeps_) : sweeps_.prepare();
     do {
       const bool backwards = search_.sweeps % 2 == 1;
-      const double change = std::sqrt(balls ? balls_.sweep(backwards) : sweeps_.sweep(backwards));
+      const double change =
+          std::sqrt(compact ? compact_.sweep(backwards) : sweeps_.sweep(backwards));
       ++search_.sweeps;
       search_.change = reference_ > 0.0 ? change / reference_ : change;
       search_.converged = change <= enough;
       exact = change <= kExact * enough;
       if (first_change < 0.0) first_change = change;
     } while (!search_.converged && search_.sweeps < most);
-    if (balls) balls_.give_back(sweeps_);
+    if (compact) compact_.give_back();
   };
   run(options_.sweeps > 0 ? options_.sweeps : kUsualSweeps);
   if (search_.converged ? !exact && unknowns() <= kFew : is_small()) {
-    if (balls) sweeps_.prepare();
+    if (compact) sweeps_.prepare();
     if (solve_impulses(sweeps_, enough, kExact * enough)) search_.converged = true;
   }
   if (!search_.converged && search_.sweeps < most_sweeps()) run(most_sweeps());

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include <polhode/engines/compact_gauss_seidel.hpp>
 #include <polhode/engines/impulse_newton.hpp>
 #include <polhode/engines/projected_gauss_seidel.hpp>
-#include <polhode/engines/sphere_gauss_seidel.hpp>
 #include <polhode/equations/newton_engine.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/system/body_contacts.hpp>
@@ -62,7 +62,7 @@ class NonsmoothEngine final : public NewtonEngine {
   InteractionSweep loads_;
   ImpulseOptions options_;
   ProjectedGaussSeidel sweeps_;
-  SphereGaussSeidel balls_;
+  CompactGaussSeidel compact_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<ImpulsePoint> points_;
   std::vector<ImpulseLoss> losses_;

@@ -21,22 +21,24 @@ void ProjectedGaussSeidel::turn(const Point& p, const Vec3& impulse) {
   b.w -= b.inverse_inertia * impulse;
 }
 
+void ProjectedGaussSeidel::prepare(Point& p) const {
+  const Body &a = bodies[p.a], &b = bodies[p.b];
+  const Mat3 r_a = hat(p.arm_a), r_b = hat(p.arm_b);
+  Mat3 D = -r_a * a.inverse_inertia * r_a - r_b * b.inverse_inertia * r_b;
+  D.diagonal().array() += a.inverse_mass + b.inverse_mass;
+  const Vec3 Dn = D * p.normal;
+  p.per_normal = p.normal.dot(Dn);
+  p.across = Dn - p.per_normal * p.normal;
+  // Half the trace and the radius of Mohr's circle of the 2 × 2 block in the tangent plane.
+  const Vec3 t = p.normal.unitOrthogonal(), s = p.normal.cross(t);
+  const double tt = t.dot(D * t), ss = s.dot(D * s), ts = t.dot(D * s);
+  p.per_friction = 0.5 * (tt + ss) + std::hypot(0.5 * (tt - ss), ts);
+  p.free_normal = 1.0 / p.per_normal;
+  p.free_friction = 1.0 / p.per_friction;
+}
+
 void ProjectedGaussSeidel::prepare() {
-  for (Point& p : points) {
-    const Body &a = bodies[p.a], &b = bodies[p.b];
-    const Mat3 r_a = hat(p.arm_a), r_b = hat(p.arm_b);
-    Mat3 D = -r_a * a.inverse_inertia * r_a - r_b * b.inverse_inertia * r_b;
-    D.diagonal().array() += a.inverse_mass + b.inverse_mass;
-    const Vec3 Dn = D * p.normal;
-    p.per_normal = p.normal.dot(Dn);
-    p.across = Dn - p.per_normal * p.normal;
-    // Half the trace and the radius of Mohr's circle of the 2 × 2 block in the tangent plane.
-    const Vec3 t = p.normal.unitOrthogonal(), s = p.normal.cross(t);
-    const double tt = t.dot(D * t), ss = s.dot(D * s), ts = t.dot(D * s);
-    p.per_friction = 0.5 * (tt + ss) + std::hypot(0.5 * (tt - ss), ts);
-    p.free_normal = 1.0 / p.per_normal;
-    p.free_friction = 1.0 / p.per_friction;
-  }
+  for (Point& p : points) prepare(p);
   for (Turn& t : turns) {
     const Point& p = points[t.point];
     const Mat3 D = bodies[p.a].inverse_inertia + bodies[p.b].inverse_inertia;
@@ -45,28 +47,34 @@ void ProjectedGaussSeidel::prepare() {
   }
 }
 
+ProjectedGaussSeidel::Change ProjectedGaussSeidel::Point::projected(const Vec3& y) {
+  const double y_n = normal.dot(y);
+  const double next = std::max(0.0, normal_impulse - (y_n - least) * free_normal);
+  const double more = next - normal_impulse;
+  if (next == 0.0 && more == 0.0) return {};
+  const Vec3 slip = y - y_n * normal + more * across - wanted;
+  Vec3 friction_next = friction_impulse - free_friction * slip;
+  const double limit = friction * next, square = friction_next.squaredNorm();
+  if (square > limit * limit) friction_next *= limit / std::sqrt(square);
+  const Vec3 turned = friction_next - friction_impulse;
+  normal_impulse = next;
+  friction_impulse = friction_next;
+  const double by_normal = more * per_normal;
+  return {more * normal + turned,
+          std::max(by_normal * by_normal, turned.squaredNorm() * per_friction * per_friction),
+          false};
+}
+
 /// @eq{nonsmooth-projection}
 double ProjectedGaussSeidel::sweep(bool backwards) {
   double most = 0.0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     Point& p = points[backwards ? points.size() - 1 - k : k];
-    Body &a = bodies[p.a], &b = bodies[p.b];
-    const Vec3 y = a.v + a.w.cross(p.arm_a) - b.v - b.w.cross(p.arm_b);
-    const double y_n = p.normal.dot(y);
-    const double normal_impulse = std::max(0.0, p.normal_impulse - (y_n - p.least) * p.free_normal);
-    const double more = normal_impulse - p.normal_impulse;
-    if (normal_impulse == 0.0 && more == 0.0) continue;
-    const Vec3 slip = y - y_n * p.normal + more * p.across - p.wanted;
-    Vec3 friction_impulse = p.friction_impulse - p.free_friction * slip;
-    const double limit = p.friction * normal_impulse, square = friction_impulse.squaredNorm();
-    if (square > limit * limit) friction_impulse *= limit / std::sqrt(square);
-    const Vec3 turned = friction_impulse - p.friction_impulse;
-    p.normal_impulse = normal_impulse;
-    p.friction_impulse = friction_impulse;
-    this->apply(p, more * p.normal + turned);
-    const double by_normal = more * p.per_normal;
-    most = std::max(
-        {most, by_normal * by_normal, turned.squaredNorm() * p.per_friction * p.per_friction});
+    const Body &a = bodies[p.a], &b = bodies[p.b];
+    const Change change = p.projected(a.v + a.w.cross(p.arm_a) - b.v - b.w.cross(p.arm_b));
+    if (change.nothing) continue;
+    this->apply(p, change.impulse);
+    most = std::max(most, change.speed_squared);
   }
   return turns.empty() ? most : std::max(most, sweep_turns());
 }

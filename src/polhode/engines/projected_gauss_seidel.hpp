@@ -19,6 +19,12 @@ class ProjectedGaussSeidel {
     double inverse_mass = 0.0;                ///< 0: fixed [1/kg].
     Mat3 inverse_inertia = Mat3::Zero();      ///< World [1/(kg m²)].
   };
+  /// Change of the impulse at a point by a projection.
+  struct Change {
+    Vec3 impulse = Vec3::Zero();  ///< [N s]
+    double speed_squared = 0.0;   ///< Of the point, by that impulse [m²/s²].
+    bool nothing = true;          ///< The point is and stays open.
+  };
   struct Point {
     int a = 0, b = 0;                      ///< Bodies, including fixed ones.
     Vec3 normal, arm_a, arm_b;             ///< From b to a; from the centres of mass [-, m].
@@ -31,6 +37,9 @@ class ProjectedGaussSeidel {
     double per_friction = 0.0;             ///< Largest of D_tt [1/kg].
     Vec3 across = Vec3::Zero();            ///< D_tn: tangential speed by normal impulse [1/kg].
     double free_normal = 0.0, free_friction = 0.0;  ///< Inverses.
+
+    /// Projects the impulse onto the friction cone. @param y  Relative velocity there [m/s].
+    Change projected(const Vec3& y);
   };
   /// Rolling and torsional friction at a point.
   struct Turn {
@@ -48,6 +57,7 @@ class ProjectedGaussSeidel {
 
   /// Computes what depends on lever arms and bodies.
   void prepare();
+  void prepare(Point& p) const;
   /// One sweep over all points, in order or from the last to the first.
   /// @returns the largest change of a point's speed, squared [m²/s²].
   double sweep(bool backwards);

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <polhode/engines/projected_gauss_seidel.hpp>
+
+namespace polhode {
+
+/// The sweeps of ProjectedGaussSeidel with less arithmetic for central points, those between bodies
+/// with isotropic inertia whose lever arms are along the normal, as of balls: a third of the
+/// operations, half the memory. All other points are swept as there, in the same order.
+class CompactGaussSeidel {
+ public:
+  /// Whether there are central points, and no rolling or torsional friction.
+  [[nodiscard]] static bool suit(const ProjectedGaussSeidel& from);
+  /// @param from  Is prepared here, and must outlive the sweeps.
+  void take(ProjectedGaussSeidel& from);
+  /// @returns the largest change of a point's speed, squared [m²/s²].
+  double sweep(bool backwards);
+  /// Returns impulses and velocities to the solver that take() got.
+  void give_back();
+
+ private:
+  struct Body {
+    double v[3], inverse_mass;
+    double w[3], inverse_inertia;
+  };
+  struct Point {
+    int a, b;
+    double n[3];
+    double radius_a, radius_b;  ///< Arms are −radius_a n and radius_b n.
+    double least, wanted[3];
+    double normal_impulse, friction_impulse[3];
+    double free_normal, free_friction, friction;
+    bool central;
+  };
+
+  double sweep_central(Point& p);
+  double sweep_general(Point& p, ProjectedGaussSeidel::Point& full);
+
+  ProjectedGaussSeidel* from_ = nullptr;
+  std::vector<Body> bodies_;
+  std::vector<Point> points_;
+  bool all_central_ = true;
+};
+
+}  // namespace polhode
