@@ -138,7 +138,7 @@ TEST(Stack, OfTenBoxesStands) {
 }
 
 TEST(FreeCollision, OfEveryPairOfShapesKeepsEnergyAndMomenta) {
-  const auto all = every_shape();
+  const auto& all = every_shape();
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i; j < all.size(); ++j) {
       if (!all[i].shape.bounded() || !all[j].shape.bounded()) continue;  // overlaps at the start

@@ -87,7 +87,7 @@ class EveryPairOfShapes : public testing::TestWithParam<std::tuple<int, int>> {
       : all_(every_shape()),
         a_(all_[std::get<0>(GetParam())].shape),
         b_(all_[std::get<1>(GetParam())].shape) {}
-  std::vector<NamedShape> all_;
+  const std::vector<NamedShape>& all_;
   const geometry::Shape &a_, &b_;
 };
 
@@ -231,7 +231,7 @@ TEST_P(EveryPairOfShapes, HasTheTangentOfItsWrench) {
 }
 
 std::string pair_name(const testing::TestParamInfo<std::tuple<int, int>>& info) {
-  const auto all = every_shape();
+  const auto& all = every_shape();
   return all[std::get<0>(info.param)].name + "_" + all[std::get<1>(info.param)].name;
 }
 

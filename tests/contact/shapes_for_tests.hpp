@@ -65,7 +65,7 @@ inline geometry::Shape round_tube(double outer, double inner, double length,
 
 /// One shape of every kind, about a metre in size, off the body's centre. Kinds without an entry
 /// here follow those that have one.
-inline std::vector<NamedShape> every_shape() {
+inline std::vector<NamedShape> make_every_shape() {
   using namespace contact;
   const geometry::ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
   std::vector<double> heights;
@@ -90,6 +90,12 @@ inline std::vector<NamedShape> every_shape() {
     spec.sizes = fitting_sizes(kind, {0.8, 0.9, 0.6});
     all.push_back({kind.name, contact_shape(kind.name, place, spec)});
   }
+  return all;
+}
+
+/// The same, made once: the program of tests needs their names whenever it starts.
+inline const std::vector<NamedShape>& every_shape() {
+  static const std::vector<NamedShape> all = make_every_shape();
   return all;
 }
 
