@@ -4,8 +4,8 @@
     tools/check_layers.py                checks
     tools/check_layers.py --picture FILE draws the layers and their includes, as SVG
 
-Also checks that namespaces follow folders (docs/decisions/0009), that there are no dynamic casts and that the interface
-of interactions stays small (docs/decisions/0008).
+Also checks that docs/images/layers.svg has the arrows of today, that namespaces follow folders (docs/decisions/0009),
+that there are no dynamic casts and that the interface of interactions stays small (docs/decisions/0008).
 """
 # From the bottom up; folders of one layer do not include each other.
 LAYERS = [
@@ -35,6 +35,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src/polhode"
 RANK = {folder: i for i, layer in enumerate(LAYERS) for folder in layer}
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]polhode/([\w/]+)/\w+\.\w+[>"]')
+PICTURE = ROOT / "docs/images/layers.svg"
 INTERACTIONS = SOURCE / "system/interaction_group.hpp"
 MOST_VIRTUALS = 14
 VIRTUAL = re.compile(r"\bvirtual [^~\n]*\(")
@@ -140,11 +141,19 @@ def picture(edges):
     return "\n".join([*out, "</svg>", ""])
 
 
+def arrows(svg):
+    """Which folders include each other, as drawn."""
+    return set(re.findall(r' d="([^"]+)"', svg)) | set(re.findall(r'middle">([^<]+)<', svg))
+
+
 def main():
     problems, includes, edges = survey()
     if sys.argv[1:2] == ["--picture"]:
         pathlib.Path(sys.argv[2]).write_text(picture(edges))
         return 0
+    if arrows(PICTURE.read_text()) != arrows(picture(edges)):
+        problems.append(f"{PICTURE.relative_to(ROOT)}: other folders include each other than before. "
+                        f"Draw it again: tools/check_layers.py --picture {PICTURE.relative_to(ROOT)}")
     print("\n".join(problems) if problems else f"{includes} includes, all of lower layers.")
     return bool(problems)
 

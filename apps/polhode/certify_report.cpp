@@ -262,7 +262,7 @@ std::string certificate_table(const Certificate& c) {
                 "Error bars", orders,
                 std::any_of(c.quantities.begin(), c.quantities.end(),
                             [](const auto& q) { return q.report.order && !q.report.as_expected; })
-                    ? "; '!': another one is observed, and the bar is wider for it"
+                    ? "; '!': the observed order differs, so the bar is wider"
                     : "");
 }
 

@@ -204,7 +204,10 @@ def linearize(
     slopes = np.array([slope(where, T[:, k], still) for k in range(f)]).T.reshape(len(names), f)
     chosen = _choose(slopes, of_joints, f)
     if len(chosen) < f:
-        raise ValueError(f"{f - len(chosen)} of {f} freedoms are not determined by coordinates of joints and positions")
+        raise ValueError(
+            f"{f - len(chosen)} of {f} degrees of freedom are neither coordinates of joints nor positions of bodies, "
+            "as the rotation of a free body. Connect free bodies by joints with these coordinates"
+        )
     position = _joined([_quantity(engine, names[k])[0] for k in chosen])
     speed = _joined([_quantity(engine, speeds[k])[0] for k in chosen])
     found = [_quantity(engine, name) for name in outputs]

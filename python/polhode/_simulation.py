@@ -36,7 +36,8 @@ class _Things(Mapping):  # type: ignore[type-arg]
     def __getitem__(self, name: str) -> Any:
         if name not in self._index:
             near = _native.closest(str(name), list(self._index))
-            raise KeyError(f"unknown name '{name}'." + (f" Did you mean '{near}'?" if near else ""))
+            hint = f" Did you mean '{near}'?" if near else f" There are: {', '.join(list(self._index)[:20])}."
+            raise KeyError(f"unknown name '{name}'.{hint}")
         return self._make(self._index[name])
 
     def __iter__(self) -> "Iterator[str]":
@@ -72,11 +73,13 @@ class BodyNow:
         self.set(**{name: value})
 
     def set(self, **values: Any) -> None:
-        """Sets several quantities at once: body.set(position=..., velocity=...). Raises AttributeError for
+        """Sets several quantities at once: body.set(position=..., velocity=...). Raises TypeError for
         others, ModelError if the joints cannot be assembled there, with solids, with contacts and in statics."""
         numbers = {name: None if (v := values.get(name)) is None else [float(x) for x in v] for name in self._settable}
         if set(values) - set(self._settable):
-            raise TypeError(f"{sorted(set(values) - set(self._settable))} cannot be set")
+            raise TypeError(
+                f"{', '.join(sorted(set(values) - set(self._settable)))} cannot be set; {', '.join(self._settable)} can"
+            )
         self._simulation._engine.set_body(self._index, *numbers.values())
 
     def __dir__(self) -> "list[str]":

@@ -22,7 +22,8 @@ __all__ = ["cayley_from_matrix", "matrix_from_cayley", "matrix_from_quaternion",
 def _many(function: "Callable[[Any], Any]", values: Any, shape: "tuple[int, ...]") -> Any:
     array = np.ascontiguousarray(values, dtype=float)
     if array.shape[-len(shape) :] != shape or array.ndim > len(shape) + 1:
-        raise ValueError(f"expects an array of shape {shape} or (N, {str(shape)[1:]}, but it is {array.shape}")
+        rows = f"(N, {', '.join(map(str, shape))})"
+        raise ValueError(f"the array must have the shape {shape} or {rows}, but has {array.shape}")
     if array.ndim == len(shape):
         return function(array[np.newaxis])[0]
     return function(array)

@@ -82,7 +82,7 @@ def test_what_cannot_be_linearised_is_told() -> None:
         polhode.linearize(cart_pole(), ["push"])
     m = polhode.Model()
     m.add_body("stone", mass=1, inertia=[1, 2, 3])
-    with pytest.raises(ValueError, match="3 of 6 freedoms are not determined by coordinates"):
+    with pytest.raises(ValueError, match="3 of 6 degrees of freedom are neither coordinates"):
         polhode.linearize(m)
 
 

@@ -166,8 +166,8 @@ class GearPlanner {
       if (j.assembled_start)
         throw InputError(
             where_ + ".joints",
-            format("'{}' is assembled at the start, on a moving carrier", j.joint->name),
-            "Give the joint by at and axis");
+            format("'{}' is on a moving carrier and is assembled at the start", j.joint->name),
+            "Give this joint by at and axis, not by at_body");
     // Along z of the prismatic joint, whose sides are aligned.
     const Vec3 t = rack.R.col(2);
     GearCoordinate& slide = coordinate_[0];

@@ -187,9 +187,11 @@ void check_certifiable(const Model& model) {
     throw InputError("analysis.type", format("is {}, which takes no steps in time", a.type),
                      "Certify a model of type dynamics; refine a mesh by hand");
   if (!a.step && a.tolerance.value_or(kStandardTolerance) < 99.9 * kMinTolerance)
-    throw InputError("analysis.tolerance",
-                     format("is {:g}, whose hundredth no run can reach", *a.tolerance),
-                     format("Write {:g} or more", 100.0 * kMinTolerance));
+    throw InputError(
+        "analysis.tolerance",
+        format("is {:g}; certify also runs with a hundredth of it, which is below the round-off",
+               *a.tolerance),
+        format("Write {:g} or more", 100.0 * kMinTolerance));
 }
 
 std::string CertifiedQuantity::name() const {

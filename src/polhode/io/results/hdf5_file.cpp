@@ -119,7 +119,7 @@ struct Hdf5File::Impl {
     Id dataset(H5Dcreate2(file.get(), c.path.c_str(), c.integer ? H5T_STD_I64LE : H5T_IEEE_F64LE,
                           space.get(), links.get(), properties.get(), H5P_DEFAULT),
                H5Dclose);
-    if (!dataset.valid()) fail("cannot hold a data set");
+    if (!dataset.valid()) fail("cannot be written");
     text_attribute(dataset.get(), "unit", c.unit);
     datasets.push_back(std::move(dataset));
   }
@@ -144,7 +144,7 @@ struct Hdf5File::Impl {
       Dims step = stride;
       require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), step.data(),
                                   count.data(), block.data()),
-              "cannot hold a view");
+              "cannot be written");
     };
     Dims start(source_now.size(), 0);
     start[1] = v.first;
@@ -158,13 +158,13 @@ struct Hdf5File::Impl {
 
     const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     require(H5Pset_virtual(properties.get(), view.get(), ".", c.path.c_str(), source.get()),
-            "cannot hold a view");
+            "cannot be written");
     const Id links = link_properties();
     const Id dataset(
         H5Dcreate2(file.get(), v.path.c_str(), c.integer ? H5T_STD_I64LE : H5T_IEEE_F64LE,
                    view.get(), links.get(), properties.get(), H5P_DEFAULT),
         H5Dclose);
-    if (!dataset.valid()) fail("cannot hold a view");
+    if (!dataset.valid()) fail("cannot be written");
     text_attribute(dataset.get(), "unit", v.unit.empty() ? c.unit : v.unit);
   }
 
@@ -175,8 +175,8 @@ struct Hdf5File::Impl {
     const Id attribute(
         H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
         H5Aclose);
-    if (!attribute.valid()) fail("cannot hold an attribute");
-    require(H5Awrite(attribute.get(), type.get(), &text), "cannot hold an attribute");
+    if (!attribute.valid()) fail("cannot be written");
+    require(H5Awrite(attribute.get(), type.get(), &text), "cannot be written");
   }
 
   /// The group of that path, made if it is missing.
@@ -196,7 +196,7 @@ struct Hdf5File::Impl {
       std::copy_n(held.begin() + static_cast<std::ptrdiff_t>(k * frame_size + offset), size,
                   values.begin() + static_cast<std::ptrdiff_t>(k * size));
     const Dims all = shape(c, written + held_frames);
-    require(H5Dset_extent(datasets[index].get(), all.data()), "cannot grow");
+    require(H5Dset_extent(datasets[index].get(), all.data()), "cannot be extended");
     const Dims part = shape(c, held_frames);
     Dims start(part.size(), 0);
     start[0] = written;
@@ -308,7 +308,8 @@ Hdf5File Hdf5File::append_to(const std::string& path, std::vector<Channel> chann
   }
   for (std::size_t i = 0; i < m.channels.size(); ++i) {
     const Dims all = shape(m.channels[i], m.written);
-    m.require(H5Dset_extent(m.datasets[i].get(), all.data()), "cannot be cut");
+    m.require(H5Dset_extent(m.datasets[i].get(), all.data()),
+              "cannot be shortened to the time of the restart");
   }
   m.flush_file();
   return result;
@@ -334,7 +335,7 @@ void Hdf5File::attribute(const std::string& group, const std::string& name, doub
   const Id attribute(
       H5Acreate2(object.get(), name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
       H5Aclose);
-  impl_->require(H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value), "cannot hold an attribute");
+  impl_->require(H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value), "cannot be written");
 }
 
 void Hdf5File::names(const std::string& path, const std::vector<std::string>& values) {
@@ -347,13 +348,13 @@ void Hdf5File::names(const std::string& path, const std::vector<std::string>& va
   const Id dataset(H5Dcreate2(impl_->file.get(), path.c_str(), type.get(), space.get(), links.get(),
                               H5P_DEFAULT, H5P_DEFAULT),
                    H5Dclose);
-  if (!dataset.valid()) impl_->fail("cannot hold a list of names");
+  if (!dataset.valid()) impl_->fail("cannot be written");
   const Id transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   H5Pset_buffer(transfer.get(), kNamesBytes, nullptr, nullptr);
   if (!values.empty())
     impl_->require(
         H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, transfer.get(), pointers.data()),
-        "cannot hold a list of names");
+        "cannot be written");
 }
 
 void Hdf5File::numbers(const std::string& path, const std::vector<std::int64_t>& values) {
@@ -362,11 +363,11 @@ void Hdf5File::numbers(const std::string& path, const std::vector<std::int64_t>&
   const Id dataset(H5Dcreate2(impl_->file.get(), path.c_str(), H5T_STD_I64LE, space.get(),
                               links.get(), H5P_DEFAULT, H5P_DEFAULT),
                    H5Dclose);
-  if (!dataset.valid()) impl_->fail("cannot hold a list of numbers");
+  if (!dataset.valid()) impl_->fail("cannot be written");
   if (!values.empty())
     impl_->require(
         H5Dwrite(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        "cannot hold a list of numbers");
+        "cannot be written");
 }
 
 void Hdf5File::vectors(const std::string& path, const std::vector<Vec3>& values,
@@ -377,12 +378,12 @@ void Hdf5File::vectors(const std::string& path, const std::vector<Vec3>& values,
   const Id dataset(H5Dcreate2(impl_->file.get(), path.c_str(), H5T_IEEE_F64LE, space.get(),
                               links.get(), H5P_DEFAULT, H5P_DEFAULT),
                    H5Dclose);
-  if (!dataset.valid()) impl_->fail("cannot hold a list of vectors");
+  if (!dataset.valid()) impl_->fail("cannot be written");
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   if (!values.empty())
     impl_->require(
         H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        "cannot hold a list of vectors");
+        "cannot be written");
   impl_->text_attribute(dataset.get(), "unit", unit);
 }
 

@@ -306,7 +306,7 @@ class AbaqusReader {
   /// Limits nested sets of sets, which could otherwise take hours for a small file.
   void count_work() {
     if (++work_ > 100'000 + 200 * in_.bytes().size())
-      refuse("the sets name more members than the file can have", "Write each set once");
+      refuse("the sets contain one another too many times", "Write the sets without nesting");
   }
 
   /// Calls use() with each number of the data lines; with GENERATE, lines are first, last, step. A
@@ -342,7 +342,7 @@ class AbaqusReader {
   void read_node_set() {
     const std::string name = required("NSET");
     if (const auto of = parameter("ELSET"))
-      refuse_keyword(format("the nodes of the element set {} are not gathered", quote(*of)),
+      refuse_keyword(format("*NSET with ELSET={} is not supported", quote(*of)),
                      "Select by the element set itself");
     each_member([&](std::int64_t label) { put_node(label, name); },
                 [&](const std::string& other) {
