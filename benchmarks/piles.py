@@ -73,6 +73,25 @@ def with_motor(model):
     return model
 
 
+def mixed(n, every, duration):
+    """Balls of which every so-manieth is a box."""
+    model = balls(n, duration)
+    for name, body in model["bodies"].items():
+        if name != "bin" and int(name[1:]) % every == 0:
+            body["shape"] = {"box": [0.18, 0.16, 0.14]}
+    return model
+
+
+def with_one_ball(model):
+    model["bodies"]["b0"]["shape"] = {"sphere": 0.2}
+    return model
+
+
+def by_impulses(model):
+    model["contacts"]["default"]["law"] = "nonsmooth"
+    return model
+
+
 CASES = {
     "100 balls": lambda t: balls(100, t),
     "300 balls": lambda t: balls(300, t),
@@ -83,6 +102,11 @@ CASES = {
     "100 boxes": lambda t: boxes(100, t),
     "300 boxes": lambda t: boxes(300, t),
     "300 boxes, a pendulum beside them": lambda t: with_pendulum(boxes(300, t)),
+    "300 balls by impulses": lambda t: by_impulses(balls(300, t)),
+    "299 balls, one box, by impulses": lambda t: by_impulses(mixed(300, 300, t)),
+    "150 balls, 150 boxes, by impulses": lambda t: by_impulses(mixed(300, 2, t)),
+    "one ball, 299 boxes, by impulses": lambda t: by_impulses(with_one_ball(boxes(300, t))),
+    "300 boxes by impulses": lambda t: by_impulses(boxes(300, t)),
 }
 
 

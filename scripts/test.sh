@@ -17,7 +17,7 @@ threads=no
 [ "${1:-}" = --quick ] && quick=yes
 [ "${1:-}" = --sanitize ] && sanitize=yes
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 POLHODE_WERROR=ON
-export POLHODE_ASSERTIONS=1  # of every program that a test starts
+export POLHODE_ASSERTIONS=1  # in every program that a test starts
 jobs=$(nproc)
 passed=0
 failed=0
@@ -72,17 +72,18 @@ tests() {
 # The unit tests in one process for each processor: starting one for each test takes longer than they do.
 unit_tests_under_sanitizers() {
   heading "unit tests under sanitizers"
-  local shard log processes=()
+  local shard log count processes=()
   for ((shard = 0; shard < jobs; shard++)); do
-    (cd build/dev/tests && GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard ./polhode_unit_tests) \
-      >"$logs/sanitizers-$shard.log" 2>&1 &
+    (cd build/dev/tests && GTEST_COLOR=no GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard \
+      timeout 7200 ./polhode_unit_tests) >"$logs/sanitizers-$shard.log" 2>&1 &
     processes+=($!)
   done
   for ((shard = 0; shard < jobs; shard++)); do
     log=$logs/sanitizers-$shard.log
-    if wait "${processes[shard]}"; then
-      passed=$((passed + $(sed -nE 's/^\[  PASSED  \] ([0-9]+) tests?.*/\1/p' "$log")))
-    else
+    wait "${processes[shard]}" && count=$(sed -nE 's/^\[  PASSED  \] ([0-9]+) tests?.*/\1/p' "$log") || count=
+    if [ -n "$count" ]; then
+      passed=$((passed + count))
+    else  # a failed test, a finding, which ends the process, or a test that ended it or hangs
       grep -aE '^\[  FAILED  \]|ERROR: |runtime error:|assertion failed' "$log" | head -50
       tail -30 "$log"
       failed=$((failed + 1))

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
 #include <vector>
 
-#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/diagnostics.hpp>
@@ -86,7 +84,6 @@ int main_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace polhode;
-  evaluates_assertions = std::getenv("POLHODE_ASSERTIONS") != nullptr;
   try {
     return cli::main_program(argc, argv);
   } catch (const io::ModelErrors& errors) {

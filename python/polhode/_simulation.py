@@ -36,7 +36,8 @@ class _Things(Mapping):  # type: ignore[type-arg]
     def __getitem__(self, name: str) -> Any:
         if name not in self._index:
             near = _native.closest(str(name), list(self._index))
-            hint = f" Did you mean '{near}'?" if near else f" There are: {', '.join(list(self._index)[:20])}."
+            names = ", ".join([*list(self._index)[:20], *(["..."] if len(self._index) > 20 else [])]) or "none"
+            hint = f" Did you mean '{near}'?" if near else f" There are: {names}."
             raise KeyError(f"unknown name '{name}'.{hint}")
         return self._make(self._index[name])
 

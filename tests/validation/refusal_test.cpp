@@ -86,8 +86,7 @@ TEST(StepRefusal, RejectsAStepThatReachesTheMirrorImageOfAJointAndHalvesIt) {
     if (trial.message.find("mirror image") == std::string::npos) continue;
     ++mirrored;
     EXPECT_THAT(trial.message,
-                testing::HasSubstr(
-                    "joint 'hinge': reached the mirror image of its assembly; take shorter steps"));
+                testing::HasSubstr("joint 'hinge': reached the mirror image of its assembly"));
     EXPECT_EQ(trial.end, RunEnd::not_converged);
     EXPECT_EQ(trial.t, 0.0);
 

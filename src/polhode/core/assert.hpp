@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// Whether assertions are evaluated. Off by default; a program sets it before it starts threads, as
-/// the tests do, and the command line if the environment has POLHODE_ASSERTIONS.
+/// Whether assertions are evaluated: with POLHODE_ASSERTIONS=1 in the environment, or if a program
+/// switches them on before it starts threads, as the tests do.
 extern bool evaluates_assertions;
 
 /// Failure of an assertion: writes its text, file and line to stderr and aborts the program.

@@ -25,23 +25,22 @@ bool is_central(const std::vector<char>& round, const ProjectedGaussSeidel::Poin
   return true;
 }
 
-/// By body: whether its inertia is isotropic.
-std::vector<char> round_bodies(const ProjectedGaussSeidel& s) {
-  std::vector<char> round;
-  for (const ProjectedGaussSeidel::Body& b : s.bodies) round.push_back(is_round(b.inverse_inertia));
-  return round;
-}
-
 }  // namespace
 
-bool CompactGaussSeidel::suit(const ProjectedGaussSeidel& from) {
+bool CompactGaussSeidel::take(ProjectedGaussSeidel& from) {
   if (!from.turns.empty()) return false;
-  const std::vector<char> round = round_bodies(from);
-  return std::any_of(from.points.begin(), from.points.end(),
-                     [&](const auto& p) { return is_central(round, p); });
-}
-
-void CompactGaussSeidel::take(ProjectedGaussSeidel& from) {
+  round_.clear();
+  for (const ProjectedGaussSeidel::Body& b : from.bodies)
+    round_.push_back(is_round(b.inverse_inertia));
+  points_.resize(from.points.size());
+  bool any = false;
+  all_central_ = true;
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    points_[k].central = is_central(round_, from.points[k]);
+    any = any || points_[k].central;
+    all_central_ = all_central_ && points_[k].central;
+  }
+  if (!any) return false;
   from_ = &from;
   const std::size_t n = from.bodies.size();
   bodies_.assign(n + kGrounds, {});
@@ -54,9 +53,6 @@ void CompactGaussSeidel::take(ProjectedGaussSeidel& from) {
     bodies_[b].inverse_mass = body.inverse_mass;
     bodies_[b].inverse_inertia = body.inverse_inertia(0, 0);
   }
-  const std::vector<char> round = round_bodies(from);
-  points_.resize(from.points.size());
-  all_central_ = true;
   for (std::size_t k = 0; k < points_.size(); ++k) {
     ProjectedGaussSeidel::Point& p = from.points[k];
     Point& q = points_[k];
@@ -65,9 +61,7 @@ void CompactGaussSeidel::take(ProjectedGaussSeidel& from) {
     };
     q.a = own(p.a);
     q.b = own(p.b);
-    q.central = is_central(round, p);
     if (!q.central) {
-      all_central_ = false;
       from.prepare(p);
       continue;
     }
@@ -87,6 +81,7 @@ void CompactGaussSeidel::take(ProjectedGaussSeidel& from) {
                              b.inverse_inertia * q.radius_b * q.radius_b);
     q.friction = p.friction;
   }
+  return true;
 }
 
 /// @eq{nonsmooth-projection}
@@ -163,7 +158,7 @@ double CompactGaussSeidel::sweep_general(Point& p, ProjectedGaussSeidel::Point& 
 void CompactGaussSeidel::give_back() {
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const Point& q = points_[k];
-    if (!q.central) continue;  // they are there
+    if (!q.central) continue;  // swept in place
     ProjectedGaussSeidel::Point& p = from_->points[k];
     p.normal_impulse = q.normal_impulse;
     p.friction_impulse = Vec3(q.friction_impulse[0], q.friction_impulse[1], q.friction_impulse[2]);

@@ -9,13 +9,12 @@ namespace polhode {
 
 /// The sweeps of ProjectedGaussSeidel with less arithmetic for central points, those between bodies
 /// with isotropic inertia whose lever arms are along the normal, as of balls: a third of the
-/// operations, half the memory. All other points are swept as there, in the same order.
+/// operations. All other points are swept as there, in the same order.
 class CompactGaussSeidel {
  public:
-  /// Whether there are central points, and no rolling or torsional friction.
-  [[nodiscard]] static bool suit(const ProjectedGaussSeidel& from);
-  /// @param from  Is prepared here, and must outlive the sweeps.
-  void take(ProjectedGaussSeidel& from);
+  /// @param from  Must outlive the sweeps; its points that are not central are prepared here.
+  /// @returns false if it has no central points, or rolling or torsional friction.
+  [[nodiscard]] bool take(ProjectedGaussSeidel& from);
   /// @returns the largest change of a point's speed, squared [m²/s²].
   double sweep(bool backwards);
   /// Returns impulses and velocities to the solver that take() got.
@@ -42,6 +41,7 @@ class CompactGaussSeidel {
   ProjectedGaussSeidel* from_ = nullptr;
   std::vector<Body> bodies_;
   std::vector<Point> points_;
+  std::vector<char> round_;  ///< By body: whether its inertia is isotropic.
   bool all_central_ = true;
 };
 

@@ -212,9 +212,10 @@ bool NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
   bool exact = false;
   double first_change = -1.0;
-  const bool compact = CompactGaussSeidel::suit(sweeps_);
+  bool compact = false;
   const auto run = [&](int most) {
-    compact ? compact_.take(sweeps_) : sweeps_.prepare();
+    compact = compact_.take(sweeps_);
+    if (!compact) sweeps_.prepare();
     do {
       const bool backwards = search_.sweeps % 2 == 1;
       const double change =

@@ -21,7 +21,7 @@ void ProjectedGaussSeidel::turn(const Point& p, const Vec3& impulse) {
   b.w -= b.inverse_inertia * impulse;
 }
 
-void ProjectedGaussSeidel::prepare(Point& p) const {
+void ProjectedGaussSeidel::prepare(Point& p) {
   const Body &a = bodies[p.a], &b = bodies[p.b];
   const Mat3 r_a = hat(p.arm_a), r_b = hat(p.arm_b);
   Mat3 D = -r_a * a.inverse_inertia * r_a - r_b * b.inverse_inertia * r_b;

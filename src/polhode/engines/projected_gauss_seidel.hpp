@@ -57,7 +57,7 @@ class ProjectedGaussSeidel {
 
   /// Computes what depends on lever arms and bodies.
   void prepare();
-  void prepare(Point& p) const;
+  void prepare(Point& p);  ///< Likewise of one of the points.
   /// One sweep over all points, in order or from the last to the first.
   /// @returns the largest change of a point's speed, squared [m²/s²].
   double sweep(bool backwards);

@@ -113,7 +113,7 @@ void Mumps::analyse(int n, const std::vector<int>& rows, const std::vector<int>&
   call_alone(s.call, &s.m);
   if (s.m.infog[0] == kStructural)
     throw SolveError("The tangent matrix of the nodes is singular by its pattern",
-                     "Look for nodes that belong to no element, and bodies that nothing holds");
+                     "Look for bodies and solids that nothing holds");
   if (s.m.infog[0] < 0)
     throw SolveError(format("The tangent matrix of the nodes could not be analysed (MUMPS {}, {})",
                             s.m.infog[0], s.m.infog[1]),

@@ -35,9 +35,6 @@ constexpr double kRoundOffBelow = 1e-2;
 /// Contraction rate above which reused factors are renewed.
 constexpr double kSlowContraction = 0.05;
 
-/// Angle of a rotation from the length of its Cayley vector [deg].
-double degrees_of(double length) { return 360.0 / std::numbers::pi * std::atan(0.5 * length); }
-
 /// Factor on the iteration limit once an increment was below the tolerance: near a singular
 /// position multipliers of redundant rows converge slowly by proximal iterations.
 constexpr int kMoreWhenClose = 3;
@@ -51,6 +48,9 @@ constexpr double kLeftByKeptFactor = 1e-4;
 /// Tolerated leak of the multipliers, Σ|λ g|, as a part of the energy.
 constexpr double kEnergyLeak = 1e-14;
 constexpr double kNewtonRoundOff = 4.4e-16;
+
+/// Angle of a rotation from the length of its Cayley vector [deg].
+double degrees_of(double length) { return 360.0 / std::numbers::pi * std::atan(0.5 * length); }
 
 }  // namespace
 
@@ -141,9 +141,10 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       return fail("converges too slowly"), report;
     if (done.rotation > options.max_rotation) {
       fail(
-          format("a body rotates by {:.3g} deg in one step, more than the {:.3g} deg of "
-                 "max_step_rotation",
-                 degrees_of(done.rotation), degrees_of(options.max_rotation)));
+          format("a body rotates by |Θ| = {:.3g} ({:.0f} deg) in one step, more than "
+                 "max_step_rotation = {:.3g} ({:.0f} deg)",
+                 done.rotation, degrees_of(done.rotation), options.max_rotation,
+                 degrees_of(options.max_rotation)));
       return report;
     }
     report.constraints = engine.check(state, trial);

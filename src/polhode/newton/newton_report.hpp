@@ -18,8 +18,8 @@ struct NewtonReport {
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double rotation = 0.0;           ///< Largest |Θ| in the step [-].
   bool hard = false;               ///< Converged, but slowly: beyond its iteration limit.
-  std::string reason;  ///< If not converged: "contracts too slowly", "turns by ...", ...
-  std::string worst;   ///< Location of the largest increment: "body 'forearm'".
+  std::string reason;              ///< If not converged: "converges too slowly", ...
+  std::string worst;               ///< Location of the largest increment: "body 'forearm'".
   ConstraintCheck constraints;
   [[nodiscard]] std::string text() const;  ///< One paragraph, with a hint what to try next.
 };

@@ -46,6 +46,11 @@ const State& Simulation::state() const { return impl_->state; }
 const StartReport& Simulation::start_report() const { return impl_->start_report; }
 
 StepReport Simulation::step(double t_limit) {
+  if (!(t_limit > time()))
+    throw InputError(
+        "the end of the step",
+        format("is {:.6g}, but must be after the present time, {:.6g}", t_limit, time()),
+        "Give a later time; the end of the analysis may have been reached");
   const double wall = wall_clock(), cpu = cpu_clock();
   StepReport report = advance(t_limit);
   impl_->figures.wall_time_s += wall_clock() - wall;

@@ -135,7 +135,7 @@ class Simulation {
   [[nodiscard]] const StartReport& start_report() const;
 
   /// Takes one accepted step, not beyond t_limit. In statics time is the load factor, and a step
-  /// leads to the next equilibrium.
+  /// leads to the next equilibrium. @throws InputError unless t_limit is after time().
   StepReport step(double t_limit);
   /// Steps to the model's duration, or to the full load; calls observe(*this) at the start and
   /// after every step whose end is an output time (model.output.every), and on_step after every

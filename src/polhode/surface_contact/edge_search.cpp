@@ -195,6 +195,7 @@ double EdgeContact::free_part(const NodeStep& from, const NodeStep& to,
     };
     length *= 1.0 + turn;
     const double now = clearance_at(x);
+    if (now <= 0.0) continue;
     const double least = kLeave * std::min(now, 2.0 * law_.normal.tolerance);
     most = conservative_advancement(most, now, least, length, [&](double part) {
       Vec3 at[4];

@@ -67,9 +67,7 @@ struct InteractionItem {
   /// Whether acceptable() is called after every step, not only where rows may have a mirror image.
   [[nodiscard]] bool always_queried() const { return false; }
   /// Reason if acceptable() is false.
-  [[nodiscard]] const char* refusal() const {
-    return "reached the mirror image of its assembly; take shorter steps";
-  }
+  [[nodiscard]] const char* refusal() const { return "reached the mirror image of its assembly"; }
   /// Mixed-point iterations of statics: stores in the history the stress that the linear model at
   /// this iterate predicts for the increments (Δr, Δθ) of a and b.
   void extrapolate(const PairStep&, const Vec6& /*of_a*/, const Vec6& /*of_b*/,

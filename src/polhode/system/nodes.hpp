@@ -93,7 +93,7 @@ class Nodes {
   [[nodiscard]] bool conservative() const;
   [[nodiscard]] bool dissipates() const;
 
-  /// Name of an element: "element 17 of solid 'pad'".
+  /// Name of an element: "element 17 of 'solids.pad' (hex8)".
   [[nodiscard]] std::string element_name(int group, int element) const;
   /// Place of a node, for messages.
   [[nodiscard]] NodePlace place_of(int node) const;

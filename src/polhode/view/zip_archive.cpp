@@ -68,7 +68,7 @@ void add_description(LittleEndian& out, const ZipEntry& entry, std::size_t packe
 std::string zip_archive(std::span<const ZipEntry> entries) {
   constexpr std::size_t kMax = std::numeric_limits<std::uint32_t>::max();
   const InputError too_large("the results", "exceed the 4 GB or 65535 files of a zip archive",
-                             "Name fewer results, or take fewer frames");
+                             "Name fewer results, or show fewer frames with --frames");
   if (entries.size() > std::numeric_limits<std::uint16_t>::max()) throw too_large;
   LittleEndian archive, directory;
   for (const ZipEntry& entry : entries) {
