@@ -74,7 +74,7 @@ def with_motor(model):
 
 
 def mixed(n, every, duration):
-    """Balls of which every so-manieth is a box."""
+    """Balls, with a box in place of the first of every few."""
     model = balls(n, duration)
     for name, body in model["bodies"].items():
         if name != "bin" and int(name[1:]) % every == 0:

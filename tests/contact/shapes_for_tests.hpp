@@ -93,7 +93,7 @@ inline std::vector<NamedShape> make_every_shape() {
   return all;
 }
 
-/// The same, made once: the program of tests needs their names whenever it starts.
+/// One shape of every kind, made once in a process: tests are named after them at every start.
 inline const std::vector<NamedShape>& every_shape() {
   static const std::vector<NamedShape> all = make_every_shape();
   return all;

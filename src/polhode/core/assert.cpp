@@ -11,7 +11,7 @@ constinit bool evaluates_assertions = false;
 
 namespace {
 
-/// Never switches off what a program has switched on before.
+/// Request of the environment, which leaves on what a program has switched on before.
 [[maybe_unused]] const bool kOfEnvironment = [] {
   const char* value = std::getenv("POLHODE_ASSERTIONS");
   if (value && *value != '\0' && std::strcmp(value, "0") != 0) evaluates_assertions = true;

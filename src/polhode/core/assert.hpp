@@ -22,6 +22,7 @@ template <class Range>
 
 }  // namespace polhode
 
+/// An assertion; its condition is evaluated only on request, see evaluates_assertions.
 #define POLHODE_ASSERT(...)                          \
   (!::polhode::evaluates_assertions || (__VA_ARGS__) \
        ? static_cast<void>(0)                        \

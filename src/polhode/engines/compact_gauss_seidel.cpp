@@ -140,7 +140,7 @@ inline double CompactGaussSeidel::sweep_central(Point& p) {
   return std::max(by_normal * by_normal, (t0 * t0 + t1 * t1 + t2 * t2) * by_friction * by_friction);
 }
 
-/// The same at any other point, whose constants are in `full`.
+/// Largest change of a speed at a point that is not central, squared. @param full  Its constants.
 double CompactGaussSeidel::sweep_general(Point& p, ProjectedGaussSeidel::Point& full) {
   Body &a = bodies_[p.a], &b = bodies_[p.b];
   const ProjectedGaussSeidel::Body &full_a = from_->bodies[full.a], &full_b = from_->bodies[full.b];

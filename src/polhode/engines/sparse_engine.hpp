@@ -17,8 +17,8 @@ namespace polhode {
 /// linear solvers: the reference for the elimination along the tree, and its fallback. Where the
 /// system has deformable solids, their nodes are eliminated first. Where bodies may be in contact,
 /// the matrix has their pairs as well, and is analysed again when these change; increments are
-/// limited so that no shapes pass through each other. With contacts of bodies, or of the surfaces
-/// of meshes, increments are shortened until the residual decreases.
+/// limited so that no shapes pass through each other. With contact between bodies or
+/// between deformable surfaces a line search reduces the residual.
 class SparseEngine final : public NewtonEngine {
  public:
   /// @param solver  Of bodies and joints: "block_lu", "klu" or "sparse_lu". @throws InputError for
