@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the documentation site into build/docs/html: open index.html, with the network off if you like. Warnings are
-# errors, and all links are followed. The theory goes into theory.pdf, too, where there is a Chromium. Sphinx goes into a virtual environment under build/; where that cannot be had, it
-# says so and ends with 77.
+# errors, and all links are followed. The theory goes into theory.pdf, too, where there is a Chromium. Sphinx goes into a
+# virtual environment under build/; where that cannot be had, it says so and ends with 77.
 #
 #   scripts/docs.sh                    with the runs of some examples, to play, where the program is built
 #   POLHODE=path/to/polhode scripts/docs.sh

@@ -53,6 +53,8 @@ def _declarations(text):
                 break
         shown = re.sub(r"\s*(\{.*)?;?\s*$", "", " ".join(declared))
         shown = shown.replace("[[nodiscard]] ", "")
+        if macro := re.match(r"#define\s+\w+(\([^)]*\))?", shown):
+            shown = macro[0]
         if shown and not private:
             yield re.sub(r"\s*:\s[\w(].*$", "", shown) if shown.count("(") and re.search(r"\)\s*:\s", shown) else shown, comment
 
