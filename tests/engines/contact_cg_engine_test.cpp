@@ -161,7 +161,7 @@ TEST(ContactCgEngine, StartsCloseToTheSolutionWithBoxesAndJoints) {
 /// stiff contact. @tests{contact-spring}
 TEST(ContactCgEngine, FindsTheEndOfAnImpactOnAHingedBody) {
   for (const double dt : {5e-3, 2e-3, 1e-4})
-    for (const double beside : {0.0, 0.06}) {
+    for (const double beside : {0.0, 0.03, 0.055, 0.06, 0.065}) {
       Scene s;
       s.cg_residual = 1e-6;
       BodyMotion turning = at({0.0, 0.0, 0.0});
@@ -172,7 +172,7 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactOnAHingedBody) {
       s.law(0.5, 0.0);
       s.begin(dt);
       const double iterations = iterations_to(s, 0.03);
-      EXPECT_LE(s.cuts, 1) << dt << ", " << beside;
+      EXPECT_LE(s.cuts, 2) << dt << ", " << beside;
       EXPECT_LT(iterations, 12) << dt << ", " << beside;
       EXPECT_GT(s.motion(ball).v.z(),
                 beside == 0.0 ? -0.1 : -2.0);  // after contact with the paddle
@@ -182,7 +182,7 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactOnAHingedBody) {
 /// A ball that rolls and slides along the face of a heavy turning paddle: the gap is a small part
 /// of the band while the ball moves on a curve relative to the paddle. @tests{contact-filter}
 TEST(ContactCgEngine, FollowsABallOnARotatingFace) {
-  for (const double dt : {10e-3, 5e-3, 1e-3, 1e-4}) {
+  for (const double dt : {10e-3, 8e-3, 5e-3, 1e-3, 1e-4}) {
     Scene s;
     s.cg_residual = 1e-6;
     BodyMotion turning = at({0.0, 0.0, 0.15});
@@ -194,7 +194,8 @@ TEST(ContactCgEngine, FollowsABallOnARotatingFace) {
     s.law(0.5, 0.0);
     s.begin(dt);
     const double iterations = iterations_to(s, 0.2);
-    EXPECT_EQ(s.cuts, 0) << dt;
+    // At 10 ms and more a few steps are rejected, also with exact solutions of the equations.
+    EXPECT_LE(s.cuts, dt > 8e-3 ? 3 : 0) << dt;
     EXPECT_LT(iterations, dt > 5e-3 ? 15 : dt > 5e-4 ? 8 : 4) << dt;
     const BodyMotion m = s.motion(ball), p = s.motion(paddle);
     EXPECT_GT(std::hypot(m.r.x(), m.r.y()), 0.22) << dt;  // farther from the axis than at the start

@@ -2,7 +2,7 @@
 """Eccentric impacts of rods, boxes and capsules at one point, at 2 m/s, without gravity.
 
 Without friction the impulse is p = (1 + e) w/(n·K n), K the sum of both bodies' mobilities at the point
-(tools/references/eccentric_impact.py); with friction the script integrates Routh's equations. Within the step of the impact a
+(tools/references/routh_impact.py); with friction the script integrates Routh's equations. Within the step of the impact a
 body turns by up to ω h, and so does the arm of its point: results differ by order h, and are exact where a step resolves
 the impact.
 """
@@ -13,7 +13,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "references"))
 from case import FLOOR, Case, Known, Variant, body, last, model, spin_y  # noqa: E402
 from central_impacts import chain_compliance  # noqa: E402
-from eccentric_impact import cross, dot, impact, inverse, mobility, rotation, times, turned  # noqa: E402
+from routh_impact import cross, dot, impact, inverse, mobility, rotation, times, turned  # noqa: E402
 
 W = 2.0  # m/s of approach
 GAP = W * 0.0137  # An impact after 13.7 ms: within a step of 10, 5 and 1 ms.

@@ -39,7 +39,7 @@ inline void BlockCg::add(const Spring& spring, Four arm, Block& block) {
 }
 
 /// [A, Bᵀ; B, D]⁻¹ by the Schur complement of A. @returns false if it is not positive definite.
-bool BlockCg::invert(const Block& block, Block& inverse) {
+bool BlockCg::invert(const Block& block, Mat6& inverse) {
   Mat3 A, B, D, inverse_A, inverse_S;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
@@ -51,16 +51,17 @@ bool BlockCg::invert(const Block& block, Block& inverse) {
   const Mat3 X = B * inverse_A;
   if (!linear::invert(D - X * B.transpose(), inverse_S)) return false;
   const Mat3 Y = inverse_S * X;
-  inverse_A += X.transpose() * Y;
-  const auto four = [](double x, double y, double z) {
-    return Four{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.0f};
-  };
-  for (int j = 0; j < 3; ++j) {
-    inverse.column[j].moved = four(inverse_A(0, j), inverse_A(1, j), inverse_A(2, j));
-    inverse.column[j].turned = four(-Y(0, j), -Y(1, j), -Y(2, j));
-    inverse.column[3 + j].moved = four(-Y(j, 0), -Y(j, 1), -Y(j, 2));
-    inverse.column[3 + j].turned = four(inverse_S(0, j), inverse_S(1, j), inverse_S(2, j));
-  }
+  inverse.topLeftCorner<3, 3>() = inverse_A + X.transpose() * Y;
+  inverse.bottomLeftCorner<3, 3>() = -Y;
+  inverse.topRightCorner<3, 3>() = -Y.transpose();
+  inverse.bottomRightCorner<3, 3>() = inverse_S;
+  return true;
+}
+
+bool BlockCg::invert(const Block& block, Block& inverse) {
+  Mat6 precise;
+  if (!invert(block, precise)) return false;
+  narrow(precise, inverse);
   return true;
 }
 
@@ -116,7 +117,8 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
   }
   diagonal_ = block_;
   eliminated_ = false;
-  alone_.assign(moving_.size(), 0);
+  group_of_.assign(moving_.size(), -1);
+  groups_.clear();
   springs_.clear();
   friction_.clear();
   ties_.clear();
@@ -140,17 +142,25 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
 }
 
 /// Inverse of a body's pivot, or of another positive definite block where the pivot is lost in
-/// rounding, as that of a body with springs far stiffer than its own block.
-void BlockCg::invert_pivot(std::size_t k, const Block& pivot) {
-  if (!invert(pivot, inverse_[k]) && !invert(diagonal_[k], inverse_[k]))
+/// rounding, as that of a body with springs far stiffer than its own block. @returns it precisely;
+/// inverse_ has it rounded.
+Mat6 BlockCg::invert_pivot(std::size_t k) {
+  Mat6 inverse;
+  if (!invert(pivot(k), inverse) && !invert(diagonal_[k], inverse)) {
     inverse_[k] = own_inverse_[moving_[k]];
+    return widened(inverse_[k]);
+  }
+  narrow(inverse, inverse_[k]);
+  return inverse;
 }
 
-/// Counting sort of the springs by body, and of each body's by the number of the other one.
+/// Sorts the springs by body, and each body's into those to bodies swept before it and after it.
+/// Springs within a group take no part in the sweeps.
 void BlockCg::sort_neighbours() {
   const auto n = static_cast<int>(block_.size());
+  const auto turn = [&](int k) { return group_of_[k] < 0 ? k : n + group_of_[k]; };
   const auto counts = [&](const Spring& s) {
-    return s.a != n && s.b != n && !alone_[s.a] && !alone_[s.b];
+    return s.a != n && s.b != n && turn(s.a) != turn(s.b);
   };
   first_.assign(block_.size() + 1, 0);
   for (const Spring& s : springs_)
@@ -165,49 +175,66 @@ void BlockCg::sort_neighbours() {
   const auto put = [&](const Spring& s, int own, int other, Four arm, Four other_arm) {
     neighbours_[later_[own]++] = {{s.C[0], s.C[1], s.C[2]}, arm, other_arm, other};
   };
-  for (const bool larger : {false, true})
+  for (const bool larger : {false, true})  // turns
     for (const Spring& s : springs_) {
       if (!counts(s)) continue;
-      if ((s.b > s.a) == larger) put(s, s.a, s.b, s.arm_a, s.arm_b);
-      if ((s.a > s.b) == larger) put(s, s.b, s.a, s.arm_b, s.arm_a);
+      if ((turn(s.b) > turn(s.a)) == larger) put(s, s.a, s.b, s.arm_a, s.arm_b);
+      if ((turn(s.a) > turn(s.b)) == larger) put(s, s.b, s.a, s.arm_b, s.arm_a);
     }
   for (int k = 0; k < n; ++k) {
     later_[k] = first_[k];
-    while (later_[k] < first_[k + 1] && neighbours_[later_[k]].other < k) ++later_[k];
+    while (later_[k] < first_[k + 1] && turn(neighbours_[later_[k]].other) < turn(k)) ++later_[k];
   }
 }
 
-/// Pivots D_k = A_kk − Σ A_kj D_j⁻¹ A_jk over the bodies j before k. @eq{cg-sweeps}
+/// Pivot D_k = A_kk − Σ A_kj D_j⁻¹ A_jk over the bodies j without rows that are swept before k.
+/// @eq{cg-sweeps}
+BlockCg::Block BlockCg::pivot(std::size_t k) const {
+  Block pivot = diagonal_[k];
+  for (int i = first_[k]; i < later_[k]; ++i) {
+    const Neighbour& s = neighbours_[i];
+    if (group_of_[s.other] >= 0) continue;
+    // C W C, with W the compliance of the other body at the point; several points between the
+    // same bodies count one by one.
+    const Block& Y = inverse_[s.other];
+    Spring t;
+    Four by_force[3];
+    for (int j = 0; j < 3; ++j) {
+      Pair unit{};
+      unit.moved = s.C[j];
+      unit.turned = cross(s.other_arm, s.C[j]);
+      const Pair x = times(Y, unit);
+      by_force[j] = x.moved + cross(x.turned, s.other_arm);
+    }
+    for (int j = 0; j < 3; ++j)
+      t.C[j] = -(by_force[j][0] * s.C[0] + by_force[j][1] * s.C[1] + by_force[j][2] * s.C[2]);
+    add(t, s.arm, pivot);
+  }
+  return pivot;
+}
+
+/// Inverts the pivots of bodies without rows.
 void BlockCg::eliminate() {
   eliminated_ = true;
   sort_neighbours();
   inverse_.resize(diagonal_.size());
-  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
-    if (alone_[k] == 2) continue;
-    Block pivot = diagonal_[k];
-    for (int i = first_[k]; i < later_[k]; ++i) {
-      const Neighbour& s = neighbours_[i];
-      // C W C, with W the compliance of the other body at the point; several points between the
-      // same bodies count one by one.
-      const Block& Y = inverse_[s.other];
-      Spring t;
-      Four by_force[3];
-      for (int j = 0; j < 3; ++j) {
-        Pair unit{};
-        unit.moved = s.C[j];
-        unit.turned = cross(s.other_arm, s.C[j]);
-        const Pair x = times(Y, unit);
-        by_force[j] = x.moved + cross(x.turned, s.other_arm);
-      }
-      for (int j = 0; j < 3; ++j)
-        t.C[j] = -(by_force[j][0] * s.C[0] + by_force[j][1] * s.C[1] + by_force[j][2] * s.C[2]);
-      add(t, s.arm, pivot);
-    }
-    invert_pivot(k, pivot);
-  }
+  for (std::size_t k = 0; k < diagonal_.size(); ++k)
+    if (group_of_[k] < 0) invert_pivot(k);
 }
 
-double BlockCg::precondition(const Vectors& r, Vectors& z) const {
+/// z += P left_ on the bodies of a group, with P = M⁻¹ − M⁻¹ Gᵀ Q⁻¹ G M⁻¹.
+void BlockCg::add_solution(const Group& group, Vectors& z) {
+  if (group.inverse.empty()) {
+    project(group, left_, nullptr);
+    for (const int k : group.bodies) add(times(inverse_[k], left_[k]), z[k]);
+    return;
+  }
+  const Block* block = group.inverse.data();
+  for (const int k : group.bodies)
+    for (const int j : group.bodies) add(times(*block++, left_[j]), z[k]);
+}
+
+double BlockCg::precondition(const Vectors& r, Vectors& z) {
   const std::size_t n = diagonal_.size();
   double product = 0.0;
   const auto subtract = [&](const Neighbour& s, Pair& from) {  // off-diagonal blocks are negative
@@ -217,19 +244,36 @@ double BlockCg::precondition(const Vectors& r, Vectors& z) const {
     from.moved += F;
     from.turned += cross(s.arm, F);
   };
-  for (std::size_t k = 0; k < n; ++k) {
+  const auto before = [&](std::size_t k) {
     Pair left = r[k];
     for (int i = first_[k]; i < later_[k]; ++i) subtract(neighbours_[i], left);
-    z[k] = times(inverse_[k], left);
+    return left;
+  };
+  const auto after = [&](std::size_t k) {
+    Pair left{};
+    for (int i = later_[k]; i < first_[k + 1]; ++i) subtract(neighbours_[i], left);
+    return left;
+  };
+  for (std::size_t k = 0; k < n; ++k)
+    if (group_of_[k] < 0) z[k] = times(inverse_[k], before(k));
+  for (const Group& group : groups_) {
+    for (const int k : group.bodies) {
+      left_[k] = before(k);
+      z[k] = Pair{};
+    }
+    add_solution(group, z);
+  }
+  for (std::size_t g = groups_.size(); g-- > 0;) {
+    const Group& group = groups_[g];
+    if (group.touches_later_one) {
+      for (const int k : group.bodies) left_[k] = after(k);
+      add_solution(group, z);
+    }
+    for (const int k : group.bodies) product += dot(r[k], z[k]);
   }
   for (std::size_t k = n; k-- > 0;) {
-    if (later_[k] < first_[k + 1]) {
-      Pair left{};
-      for (int i = later_[k]; i < first_[k + 1]; ++i) subtract(neighbours_[i], left);
-      const Pair more = times(inverse_[k], left);
-      z[k].moved += more.moved;
-      z[k].turned += more.turned;
-    }
+    if (group_of_[k] >= 0) continue;
+    if (later_[k] < first_[k + 1]) add(times(inverse_[k], after(k)), z[k]);
     product += dot(r[k], z[k]);
   }
   return product;
@@ -249,10 +293,8 @@ void BlockCg::multiply() {
   }
   for (const ScaledTie& t : ties_) {
     const Pair on_a = times(t.ab, p_[t.b]), on_b = times(t.ba, p_[t.a]);
-    y_[t.a].moved += on_a.moved;
-    y_[t.a].turned += on_a.turned;
-    y_[t.b].moved += on_b.moved;
-    y_[t.b].turned += on_b.turned;
+    add(on_a, y_[t.a]);
+    add(on_b, y_[t.b]);
   }
 }
 
@@ -290,10 +332,11 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
   x_.assign(n, zero);
   r_ = b;
   z_.resize(n);
+  left_.resize(n);
   p_.assign(n + 1, zero);
   y_.assign(n + 1, zero);
   carried_.setZero();
-  if (!rows_.empty()) project(r_);
+  project(r_);
   double rz = precondition(r_, z_);
   std::copy(z_.begin(), z_.end(), p_.begin());
   const double enough = part * rz;
@@ -311,15 +354,8 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
       r_[k].moved -= alpha * y_[k].moved;
       r_[k].turned -= alpha * y_[k].turned;
     }
-    double next = precondition(r_, z_);
-    if (!rows_.empty()) {
-      for (const int k : row_bodies_) next -= dot(r_[k], z_[k]);
-      project(r_);
-      for (const int k : row_bodies_) {
-        z_[k] = times(inverse_[k], r_[k]);
-        next += dot(r_[k], z_[k]);
-      }
-    }
+    project(r_);
+    const double next = precondition(r_, z_);
     const auto beta = static_cast<float>(next / rz);
     rz = next;
     for (std::size_t k = 0; k < n; ++k) {
@@ -342,13 +378,9 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
       friction_.empty() || directions == 0
           ? iterate(basis_[0], part, most)
           : iterate_with_friction(part, most, std::min(directions, kMaxDirections));
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    x_[k].moved += asked[k].moved;
-    x_[k].turned += asked[k].turned;
-  }
+  for (std::size_t k = 0; k < asked.size(); ++k) add(asked[k], x_[k]);
   for (std::size_t i = 0; i < rows_.size(); ++i)
-    multipliers_[static_cast<Eigen::Index>(i)] =
-        -size * rows_[i].scale * carried_[static_cast<Eigen::Index>(i)];
+    multipliers_[rows_[i].number] = -size * rows_[i].scale * carried_[static_cast<Eigen::Index>(i)];
   unscale(x_, size, x);
   return iterations;
 }
@@ -382,7 +414,7 @@ int BlockCg::iterate_with_friction(double part, int most, int directions) {
     }
   };
   carried_.setZero();
-  if (!rows_.empty()) project(basis_[0]);
+  project(basis_[0]);
   const double length = std::sqrt(product(basis_[0], basis_[0]));
   add_times(1.0 / length - 1.0, basis_[0], basis_[0]);
   const Vec before = carried_;

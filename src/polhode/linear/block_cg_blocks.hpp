@@ -21,6 +21,31 @@ inline BlockCg::Pair BlockCg::times(const Block& block, const Pair& x) {
   return y;
 }
 
+inline void BlockCg::narrow(const Mat6& from, Block& to) {
+  for (int j = 0; j < 6; ++j) {
+    to.column[j] = Pair{};
+    for (int i = 0; i < 3; ++i) {
+      to.column[j].moved[i] = static_cast<float>(from(i, j));
+      to.column[j].turned[i] = static_cast<float>(from(3 + i, j));
+    }
+  }
+}
+
+inline Mat6 BlockCg::widened(const Block& block) {
+  Mat6 M;
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 3; ++i) {
+      M(i, j) = block.column[j].moved[i];
+      M(3 + i, j) = block.column[j].turned[i];
+    }
+  return M;
+}
+
+inline void BlockCg::add(const Pair& x, Pair& to) {
+  to.moved += x.moved;
+  to.turned += x.turned;
+}
+
 inline double BlockCg::dot(const Pair& x, const Pair& y) {
   const Four s = x.moved * y.moved + x.turned * y.turned;
   return (static_cast<double>(s[0]) + static_cast<double>(s[1])) +

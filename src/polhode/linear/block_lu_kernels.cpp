@@ -189,10 +189,18 @@ POLHODE_INLINE bool factor_all(const BlockPlan& plan, double* values, int* pivot
   return true;
 }
 
+POLHODE_INLINE bool is_zero(const double* x, int n) {
+  int i = 0;
+  while (i < n && x[i] == 0.0) ++i;
+  return i == n;
+}
+
+/// Forward and backward substitution; the forward one leaves out nodes without load.
 POLHODE_INLINE void solve_all(const BlockPlan& plan, const double* values, const int* pivots,
                               double* x) {
   for (const BlockPlan::Node& k : plan.nodes) {
     double* const y = x + k.first;
+    if (is_zero(y, k.width)) continue;
     solve_diagonal_vector(values + k.diagonal, pivots + k.first, k.width, k.stride, y);
     for (std::size_t e = k.first_edge; e < k.last_edge; ++e) {
       const BlockPlan::Node& j = plan.nodes[plan.edges[e].node];

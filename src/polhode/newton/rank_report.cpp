@@ -2,9 +2,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 
+#include <polhode/core/disjoint_sets.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/linear/loop_rank.hpp>
@@ -97,17 +97,12 @@ int take_out_branches(const System& system, double tolerance, std::vector<Rows>&
 
 /// Connected components of interactions that share bodies, as positions in the list.
 std::vector<std::vector<int>> clusters(const System& system, const std::vector<Rows>& rows) {
-  std::vector<int> tie(static_cast<std::size_t>(system.body_count()));
-  std::iota(tie.begin(), tie.end(), 0);
-  const auto first = [&](int body) {
-    while (tie[body] != body) body = tie[body] = tie[tie[body]];
-    return body;
-  };
+  DisjointSets sets(static_cast<std::size_t>(system.body_count()));
   for (const Rows& r : rows)
-    if (r.a != kGround && r.b != kGround) tie[first(r.a)] = first(r.b);
+    if (r.a != kGround && r.b != kGround) sets.join(r.a, r.b);
   std::map<int, std::vector<int>> by_first;
   for (int k = 0; k < static_cast<int>(rows.size()); ++k)
-    by_first[first(rows[k].a != kGround ? rows[k].a : rows[k].b)].push_back(k);
+    by_first[sets.first_of(rows[k].a != kGround ? rows[k].a : rows[k].b)].push_back(k);
   std::vector<std::vector<int>> list;
   for (auto& [body, members] : by_first) list.push_back(std::move(members));
   return list;

@@ -30,14 +30,13 @@ constexpr double kReturnable = 0.5;
 ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
   const auto n = static_cast<std::size_t>(system.body_count());
   // Connected components of solids follow the bodies.
-  tie_.resize(n + system.nodes().pieces().size());
-  std::iota(tie_.begin(), tie_.end(), 0);
+  ties_ = DisjointSets(n + system.nodes().pieces().size());
   tied_.assign(n, false);
   place_.assign(n, -1);
   const auto tie = [&](int a, int b) {
     if (a != kGround) tied_[a] = true;
     if (b != kGround) tied_[b] = true;
-    if (a != kGround && b != kGround) impact_rows::join(tie_, a, b);
+    if (a != kGround && b != kGround) ties_.join(a, b);
   };
   for (const InteractionRef& ref : system.interactions())
     if (ref.rows > 0 || system.traits(ref).coupled_mass != 0.0) tie(ref.a, ref.b);
@@ -48,7 +47,7 @@ ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
     for (int body : piece.bodies) tie(piece.bodies.front(), body);
   for (std::size_t p = 0; p < nodes.pieces().size(); ++p)
     if (const ConnectedComponent& piece = nodes.pieces()[p]; !piece.bodies.empty())
-      impact_rows::join(tie_, piece.bodies.front(), static_cast<int>(n + p));
+      ties_.join(piece.bodies.front(), static_cast<int>(n + p));
   for (int g = 0; g < nodes.group_count(); ++g)
     if (const SurfaceImpacts* group = nodes.group(g).surface_impacts())
       groups_.emplace_back(g, group);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include <polhode/core/disjoint_sets.hpp>
 #include <polhode/equations/trial.hpp>
 #include <polhode/stepping/instant.hpp>
 #include <polhode/system/surface_impacts.hpp>
@@ -92,8 +93,8 @@ class ImpactResolver {
 
   const System* system_;
   std::unique_ptr<InstantSolver> solver_;  ///< From the first impact of coupled bodies on.
-  /// By body: the first body of its connected component by joints and solids.
-  std::vector<int> tie_;
+  /// Connected components by joints and solids: of bodies, followed by those of solids.
+  DisjointSets ties_;
   std::vector<bool> tied_;  ///< By body: whether it is coupled to others or to the ground.
   std::vector<int> place_;  ///< By body: position in the present island.
   /// Groups of elements, with their numbers.

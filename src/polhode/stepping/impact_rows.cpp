@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Calls use for bodies and connected components of solids loaded by a row, numbered as in `tie_`.
+/// Calls use for bodies and connected components of solids loaded by a row, numbered as in `ties_`.
 template <class Use>
 void ImpactResolver::for_bodies(int row, Use&& use) const {
   if (const SurfaceImpact* hit = surface(row)) {
@@ -22,7 +22,7 @@ void ImpactResolver::for_bodies(int row, Use&& use) const {
 }
 
 std::vector<ImpactResolver::Island> ImpactResolver::islands() const {
-  std::vector<int> root = tie_;
+  DisjointSets sets = ties_;
   const int bodies = system_->body_count(), rows = static_cast<int>(rows_.size());
   const auto first = [&](int row) {
     int one = -1;
@@ -30,11 +30,11 @@ std::vector<ImpactResolver::Island> ImpactResolver::islands() const {
     return one;
   };
   for (int k = 0; k < rows; ++k)
-    for_bodies(k, [&, one = first(k)](int body) { impact_rows::join(root, one, body); });
+    for_bodies(k, [&, one = first(k)](int body) { sets.join(one, body); });
   std::map<int, Island> by_root;
   for (int k = 0; k < rows; ++k) {
     if (first(k) < 0) continue;
-    Island& island = by_root[impact_rows::first_of(root, first(k))];
+    Island& island = by_root[sets.first_of(first(k))];
     island.rows.push_back(k);
     for_bodies(k, [&](int body) {
       if (body < bodies) island.bodies.push_back(body);
@@ -53,7 +53,7 @@ std::vector<ImpactResolver::Island> ImpactResolver::islands() const {
     if (island.tied) {
       island.bodies.clear();
       for (int body = 0; body < bodies; ++body)
-        if (impact_rows::first_of(root, body) == top) island.bodies.push_back(body);
+        if (sets.first_of(body) == top) island.bodies.push_back(body);
     } else {
       sort(island.bodies);
     }
@@ -178,7 +178,7 @@ void ImpactResolver::add_responses(std::span<const Island> islands,
   const auto component_of = [&](const Island& island, int place) -> Component* {
     if (static_cast<std::size_t>(place) >= island.bodies.size()) return nullptr;
     const int body = island.bodies[static_cast<std::size_t>(place)];
-    return tied_[body] ? &components[impact_rows::first_of(tie_, body)] : nullptr;
+    return tied_[body] ? &components[ties_.first_of(body)] : nullptr;
   };
   std::size_t rounds = 0;
   for (std::size_t i = 0; i < islands.size(); ++i) {

@@ -10,21 +10,6 @@
 
 namespace polhode {
 
-namespace impact_rows {
-
-/// Representative of a connected component (union-find).
-inline int first_of(std::vector<int>& tie, int body) {
-  while (tie[body] != body) body = tie[body] = tie[tie[body]];
-  return body;
-}
-
-inline void join(std::vector<int>& tie, int a, int b) {
-  const int x = first_of(tie, a), y = first_of(tie, b);
-  tie[std::max(x, y)] = std::min(x, y);
-}
-
-}  // namespace impact_rows
-
 /// Whether friction alone acts at the end of a step: without restitution until the normal velocity
 /// reverses, since the step itself dissipates.
 inline bool friction_alone(const ImpactCourse& course) {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include <polhode/core/disjoint_sets.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/engines/saddle_solver.hpp>
 #include <polhode/math/dense.hpp>
@@ -35,20 +35,11 @@ struct Part {
 std::vector<Part> parts_of(const System& system) {
   const Nodes& nodes = system.nodes();
   const int bodies = system.body_count();
-  std::vector<int> root(static_cast<std::size_t>(bodies + nodes.count()));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int i) {
-    while (root[static_cast<std::size_t>(i)] != i) i = root[static_cast<std::size_t>(i)];
-    return i;
-  };
-  const auto join = [&](int i, int j) {
-    const int a = find(i), b = find(j);
-    root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  };
+  DisjointSets sets(static_cast<std::size_t>(bodies + nodes.count()));
   for (const InteractionRef& ref : system.interactions())
-    if (ref.a != kGround && ref.b != kGround) join(ref.a, ref.b);
+    if (ref.a != kGround && ref.b != kGround) sets.join(ref.a, ref.b);
   for (int i = 0; i < nodes.count(); ++i)
-    if (nodes[i].body >= 0) join(nodes[i].body, bodies + i);
+    if (nodes[i].body >= 0) sets.join(nodes[i].body, bodies + i);
   std::vector<std::string> solids(static_cast<std::size_t>(nodes.count()));
   for (int g = 0; g < nodes.group_count(); ++g)
     for (int e = 0; e < nodes.group(g).size(); ++e) {
@@ -57,14 +48,14 @@ std::vector<Part> parts_of(const System& system) {
         if (nodes[node].body == kGround) continue;
         std::string& name = solids[static_cast<std::size_t>(node)];
         if (name.empty()) name = nodes.group(g).name();
-        if (nodes[list[0]].body != kGround) join(bodies + list[0], bodies + node);
+        if (nodes[list[0]].body != kGround) sets.join(bodies + list[0], bodies + node);
       }
     }
   std::vector<Part> parts;
-  std::vector<int> part_of(root.size(), -1);
+  std::vector<int> part_of(static_cast<std::size_t>(bodies + nodes.count()), -1);
   for (int i = 0; i < bodies + nodes.count(); ++i) {
     if (i >= bodies && nodes[i - bodies].body == kGround) continue;
-    int& part = part_of[static_cast<std::size_t>(find(i))];
+    int& part = part_of[static_cast<std::size_t>(sets.first_of(i))];
     if (part < 0) {
       part = static_cast<int>(parts.size());
       parts.emplace_back();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include <polhode/core/assert.hpp>
+#include <polhode/core/disjoint_sets.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/system/changing_sparsity.hpp>
@@ -13,25 +13,6 @@
 namespace polhode {
 
 namespace {
-
-/// Disjoint sets of nodes (union-find).
-class UnionFind {
- public:
-  explicit UnionFind(int n) : parent_(static_cast<std::size_t>(n)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(int i, int j) {
-    i = find(i), j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 bool has_mass(const ElementGroup& g) {
   if (g.size() == 0) return false;
@@ -208,14 +189,14 @@ void Nodes::add_masses() {
 }
 
 void Nodes::find_pieces() {
-  UnionFind sets(count());
+  DisjointSets sets(data_.size());
   for (const auto& g : groups_)
     for (int e = 0; e < g->size() && !slots_.empty(); ++e) {
       int first = -1;
       for (int i : g->nodes(e)) {
         if (bonded(i)) continue;
         if (first < 0) first = i;
-        sets.unite(first, i);
+        sets.join(first, i);
       }
     }
   // Nodes that may come into contact belong to one component.
@@ -227,7 +208,7 @@ void Nodes::find_pieces() {
     for (int i : pattern->reach()) {
       if (bonded(i)) continue;
       if (first < 0) first = i;
-      sets.unite(first, i);
+      sets.join(first, i);
     }
   }
   piece_.assign(data_.size(), -1);
@@ -235,7 +216,7 @@ void Nodes::find_pieces() {
   std::vector<std::set<int>> bodies;
   for (int i = 0; i < count(); ++i) {
     if (bonded(i)) continue;
-    int& p = piece_of_root[sets.find(i)];
+    int& p = piece_of_root[sets.first_of(i)];
     if (p < 0) {
       p = static_cast<int>(pieces_.size());
       pieces_.emplace_back();

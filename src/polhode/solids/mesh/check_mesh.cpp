@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <numeric>
 
+#include <polhode/core/disjoint_sets.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/solids/mesh/check_mesh.hpp>
@@ -79,14 +79,8 @@ void find_duplicates(const Mesh& mesh, std::vector<MeshFault>& faults) {
        "Have duplicate nodes merged if the parts are one"});
 }
 
-int root_of(std::vector<int>& parent, int node) {
-  while (parent[node] != node) node = parent[node] = parent[parent[node]];
-  return node;
-}
-
 void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
-  std::vector<int> parent(mesh.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets sets(mesh.nodes.size());
   std::vector<char> used(mesh.nodes.size(), 0);
   std::vector<int> firsts;  // first node of each element
   for (const ElementBlock& block : mesh.blocks) {
@@ -95,9 +89,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
       firsts.push_back(block.nodes[at]);
       for (std::size_t a = 0; a < n; ++a) {
         used[block.nodes[at + a]] = 1;
-        const int from = root_of(parent, block.nodes[at + a]),
-                  to = root_of(parent, block.nodes[at]);
-        parent[std::max(from, to)] = std::min(from, to);
+        sets.join(block.nodes[at + a], block.nodes[at]);
       }
     }
   }
@@ -109,7 +101,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
   std::vector<Piece> pieces;
   std::vector<int> piece_of(mesh.nodes.size(), -1);
   for (int e = 0; e < static_cast<int>(firsts.size()); ++e) {
-    int& piece = piece_of[root_of(parent, firsts[e])];
+    int& piece = piece_of[sets.first_of(firsts[e])];
     if (piece < 0) {
       piece = static_cast<int>(pieces.size());
       pieces.push_back({firsts[e], e, 0});
