@@ -13,28 +13,16 @@ import tempfile
 import venv
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PACKAGES = ["vtk", "pyarrow", "h5py", "numpy"]
+sys.path.insert(0, str(ROOT / "tests/support"))
+from python_packages import need  # noqa: E402
 
-try:
-    import h5py
-    import numpy as np
-    import pyarrow.parquet
-    import vtk
-    from vtk.util.numpy_support import vtk_to_numpy
-except ImportError as missing:
-    place = ROOT / "build/convert-tests"
-    if pathlib.Path(sys.prefix) == place:
-        print(f"Skipped: {missing}.")
-        sys.exit(77)
-    python = place / "bin/python"
-    try:
-        if not python.exists():
-            venv.create(place, with_pip=True)
-        subprocess.run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PACKAGES], check=True)
-    except (subprocess.CalledProcessError, OSError) as fault:
-        print(f"Skipped: {', '.join(PACKAGES)} cannot be installed: {fault}.")
-        sys.exit(77)
-    sys.exit(subprocess.run([python, __file__]).returncode)
+need("vtk", "pyarrow", "h5py", "numpy")
+
+import h5py  # noqa: E402
+import numpy as np  # noqa: E402
+import pyarrow.parquet  # noqa: E402
+import vtk  # noqa: E402
+from vtk.util.numpy_support import vtk_to_numpy  # noqa: E402
 
 MODEL = """format: 1
 title: Everything with points

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of deformable solids open in meshio, with the numbers that results.h5 holds.
 
-POLHODE=path/to/polhode says which program runs. Ends with 77, skipped, where meshio or h5py is missing.
+POLHODE=path/to/polhode says which program runs. meshio and h5py are those of this Python or are installed into a
+virtual environment under build/. Exit code 77, skipped, if they cannot be installed.
 """
 import os
 import pathlib
@@ -10,12 +11,13 @@ import subprocess
 import sys
 import tempfile
 
-try:
-    import h5py
-    import meshio
-except ImportError as missing:
-    print(f"Skipped: {missing}. Install it with scripts/packages.sh build test.")
-    sys.exit(77)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from python_packages import need  # noqa: E402
+
+need("meshio", "h5py")
+
+import h5py  # noqa: E402
+import meshio  # noqa: E402
 
 MODEL = """format: 1
 materials:
