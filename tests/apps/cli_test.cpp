@@ -281,7 +281,12 @@ TEST_F(CommandLine, ListsAndWritesExamples) {
   EXPECT_EQ(run({"run", "c.yaml", "--quiet", "--set", "analysis.duration=50 ms"}).code, 0);
   const auto unknown = run({"examples", "chian"});
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("Did you mean 'chain'?"));
+  EXPECT_THAT(unknown.err,
+              HasSubstr("examples: there is no example 'chian'. Did you mean 'chain'?"));
+  const auto no_value = run({"examples", "chain", "--set", "N"});
+  EXPECT_EQ(no_value.code, 2);
+  EXPECT_THAT(no_value.err, HasSubstr("--set: 'N' is not of the form name=value. Write for "
+                                      "instance --set N=40."));
   EXPECT_EQ(run({"examples", "chain", "--set", "N=0"}).code, 2);
   EXPECT_EQ(run({"examples", "chain", "--set", "M=3"}).code, 2);
 }

@@ -129,12 +129,18 @@ TEST(ReadStl, NamesTheTriangleOfABadNumber) {
 }
 
 TEST(ReadStl, RefusesKeywordsOutOfOrder) {
-  for (const char* text :
-       {"solid\nvertex 0 0 0\n", "solid\nfacet\nfacet\n", "solid\nfacet\nendfacet\n",
-        "solid\nsolid\n", "solid\nendsolid\nendsolid\n", "solid\nfacet\nendsolid\n",
-        "solid\n<html>\n",
-        "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n"})
-    EXPECT_NE(refusal("a.stl", text), "") << text;
+  const std::pair<const char*, const char*> cases[] = {
+      {"solid\nvertex 0 0 0\n", "'vertex' is outside of a facet"},
+      {"solid\nfacet\nfacet\n", "'facet' is out of place"},
+      {"solid\nfacet\nendfacet\n", "a facet has three corners, but 0 are given"},
+      {"solid\nsolid\n", "'solid' begins before the last solid has ended"},
+      {"solid\nendsolid\nendsolid\n", "'endsolid' is out of place"},
+      {"solid\nfacet\nendsolid\n", "'endsolid' is out of place"},
+      {"solid\n<html>\n", "'<html>' is not a word of an STL file"},
+      {"solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n",
+       "a facet has more than three corners"}};
+  for (const auto& [text, expected] : cases)
+    EXPECT_NE(refusal("a.stl", text).find(expected), std::string::npos) << refusal("a.stl", text);
 }
 
 TEST(ReadStl, RefusesAFileWithoutTriangles) {

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <string>
 
 #include <polhode/core/error.hpp>
+#include <polhode/geometry/hull.hpp>
 #include <polhode/geometry/read_surface.hpp>
 #include <polhode/geometry/shape.hpp>
 #include <support/paths.hpp>
@@ -71,6 +73,20 @@ TEST(HullShape, RefusesPointsAlmostInAPlane) {
   EXPECT_EQ(refusal([&] { return geometry::hull("tray", points); }),
             "tray: the points lie almost in a plane, so their hull has no volume. Give points that "
             "do not lie in one plane.");
+}
+
+TEST(ConvexHull, RefusesPointsInOnePlace) {
+  const std::vector<Vec3> points(5, Vec3(1, 2, 3));
+  EXPECT_EQ(
+      refusal([&] { return geometry::convex_hull("dot", points); }),
+      "dot: the points lie in one place, so their hull has no volume. Give at least four points "
+      "that do not lie in one plane.");
+}
+
+TEST(HeightField, RefusesAHeightThatIsNotFinite) {
+  const std::vector<double> heights{0, 0, std::numeric_limits<double>::quiet_NaN(), 0};
+  EXPECT_EQ(refusal([&] { return geometry::height_field("soil", 2, 1.0, heights); }),
+            "soil: a height is not finite. Correct the table of heights.");
 }
 
 /// Files found by fuzzers.

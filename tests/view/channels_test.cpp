@@ -119,7 +119,13 @@ TEST_F(ChannelsTest, APictureHasACurveForEachColumn) {
   for (const char* colour : {"#1f5fa8", "#c8641b", "#2d8a4e"})
     curves += svg.find(colour) != std::string::npos ? 1 : 0;
   EXPECT_EQ(curves, 3U);
-  EXPECT_THROW((void)channels_svg(results(), {"bodies"}, "t [s]"), InputError);
+  try {
+    (void)channels_svg(results(), {"bodies"}, "t [s]");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("curves. Name a part of it, at most eight curves go into a "
+                                    "panel."));
+  }
 }
 
 TEST_F(ChannelsTest, AnAnimatedSceneContainsTheMotion) {

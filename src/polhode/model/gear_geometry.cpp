@@ -27,7 +27,7 @@ class GearPlanner {
     GearGeometry out;
     out.mixed = coordinate_[0].kind != coordinate_[1].kind;
     if (out.mixed && coordinate_[0].kind == Kind::angle)
-      throw InputError(where_ + ".joints", "name the turning joint before the sliding one",
+      throw InputError(where_ + ".joints", "the turning joint is named before the sliding one",
                        "Exchange the two joints");
     std::vector<int> moving;
     for (const GearJoint& j : joints_)

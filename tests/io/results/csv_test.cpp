@@ -45,7 +45,14 @@ TEST(CsvTable, KeepsRowsUpToTheTimeItContinuesAt) {
 TEST(CsvTable, RefusesToContinueAnotherTable) {
   const test::Scratch scratch;
   { io::CsvTable table(scratch / "p.csv", {"t [s]", "y [m]"}); }
-  EXPECT_THROW(io::CsvTable(scratch / "p.csv", kHeader, 1.0), InputError);
+  try {
+    io::CsvTable table(scratch / "p.csv", kHeader, 1.0);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.what(), scratch / "p.csv" +
+                            ": has other columns than this probe. Name another folder for the "
+                            "results with -o.");
+  }
 }
 
 TEST(CsvTable, NamesTheFileItCannotWrite) {

@@ -107,6 +107,13 @@ TEST(ResultsReader, ReportsErrorsInAFile) {
       << "format: 1, and no results at all, in a file with that ending\n";
   EXPECT_THAT(message_of(scratch / "text.h5"), HasSubstr("is no HDF5 file"));
   write(scratch / "results.h5", 2);
+  const io::ResultsReader reader(scratch / "results.h5");
+  try {
+    (void)reader.read("/bodies/nobody");
+    FAIL();
+  } catch (const io::FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has no data set '/bodies/nobody'"));
+  }
   std::filesystem::resize_file(scratch / "results.h5", 600);
   EXPECT_THAT(message_of(scratch / "results.h5"), HasSubstr("is damaged"));
 }

@@ -199,6 +199,13 @@ TEST(MakeMesh, ReportsInvalidParameters) {
             "tet4, tet10.");
   EXPECT_EQ(message("cylinder", {{"diameter", {1}}, {"length", {1}}, {"cells", {1, 6, 1}}}, ""),
             "solids.pad.mesh: cells: 6 cells around, which 4 does not divide. Use 4, 8, 12, ….");
+  EXPECT_EQ(
+      message("tube", {{"inner", {1}}, {"outer", {2}}, {"length", {1}}, {"cells", {1, 2, 1}}}, ""),
+      "solids.pad.mesh: cells: 2 cells around are too few. Use at least 3.");
+  EXPECT_EQ(
+      message("block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}, {"grading", {1, 1e5, 1}}}, ""),
+      "solids.pad.mesh.grading: a ratio of 100000 is too far from 1. Stay between 1e-4 and "
+      "1e4.");
 }
 
 TEST(InlineMesh, TakesTheTypeFromTheCountOfNodes) {

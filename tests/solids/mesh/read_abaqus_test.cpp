@@ -155,6 +155,8 @@ TEST(ReadAbaqus, LocatesErrors) {
             "part.inp:25:1: 'S7' is no face of element 10 (hex8). Faces of solids are S1, S2, ….");
   EXPECT_THAT(message(two_bricks("*NSET, NSET=a, GENERATE\n1, 1000000000000, 1\n")),
               HasSubstr("the numbers 1 to 1000000000000 by 1 cannot be generated"));
+  EXPECT_EQ(message(two_bricks("*NSET\n100\n")),
+            "part.inp:24:1: *NSET needs NSET=…. Name it in the keyword's line.");
   EXPECT_EQ(message("*HEADING\nnothing\n"),
             "part.inp: the file has no nodes. Check that it is the mesh you meant.");
 }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <cstring>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,6 +70,42 @@ TEST(GmshErrors, AreLocated) {
             "file is cut short or damaged. Export the mesh again.");
 }
 
+TEST(GmshErrors, NameWhatAHeaderOrASectionShouldHave) {
+  EXPECT_EQ(message("a.msh", "$MeshFormat\n2.2 2 8\n$EndMeshFormat\n"),
+            "a.msh:2:5: the kind of file is 2, but 0 (text) or 1 (binary) is expected. Export the "
+            "mesh again from the program that made it.");
+  const std::string header = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+  EXPECT_THAT(message("a.msh", header + "$PhysicalNames\n1\n5 1 \"pad\"\n$EndPhysicalNames\n"),
+              StartsWith("a.msh:6:1: a group cannot have the dimension 5."));
+  EXPECT_THAT(message("a.msh", header + "$Elements\n0 0 0 0\n$EndElements\n$Entities\n0 0 0 0\n"
+                                        "$EndEntities\n"),
+              HasSubstr("the entities come after the elements."));
+  EXPECT_THAT(message("a.msh", header + "$Nodes\n1 1 1 1\n5 1 0 1\n1\n0 0 0\n$EndNodes\n"),
+              StartsWith("a.msh:6:1: an entity cannot have the dimension 5."));
+}
+
+std::string word(std::int32_t value) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+TEST(GmshErrors, NamePlacesInBinaryFiles) {
+  const std::string header = "$MeshFormat\n2.2 1 8\n";
+  EXPECT_THAT(message("a.msh", header + word(7) + "\n$EndMeshFormat\n"),
+              HasSubstr("the byte order is unknown: 1 reads as 7."));
+  std::string nodes = "$Nodes\n4\n";
+  for (std::int32_t i = 1; i <= 4; ++i) nodes += word(i) + std::string(3 * sizeof(double), '\0');
+  std::string elements = "$Elements\n1\n" + word(4) + word(2) + word(0);
+  for (std::int32_t element = 1; element <= 2; ++element) {
+    elements += word(element);
+    for (std::int32_t i = 1; i <= 4; ++i) elements += word(i);
+  }
+  EXPECT_THAT(message("a.msh", header + word(1) + "\n$EndMeshFormat\n" + nodes + "\n$EndNodes\n" +
+                                   elements + "\n$EndElements\n"),
+              HasSubstr("2 elements follow, but 1 of 1 are still to come."));
+}
+
 std::string vtu(const std::string& points, const std::string& cells) {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
          "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"4\" "
@@ -105,6 +144,36 @@ TEST(VtuErrors, AreLocated) {
       HasSubstr("data compressed by 'vtkLZ4DataCompressor' are not supported"));
   EXPECT_THAT(message("a.vtu", "# vtk DataFile Version 3.0\n"), HasSubstr("begins with <VTKFile>"));
   EXPECT_THAT(message("a.vtu", vtu(kPoints, "")), HasSubstr("the cells have no array 'offsets'"));
+}
+
+/// A file with one tetrahedron in which one text is replaced by another.
+std::string changed_vtu(const std::string& from, const std::string& to) {
+  std::string text = vtu(kPoints, cells("0 1 2 3", "4", "10"));
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return message("a.vtu", text.replace(at, from.size(), to));
+}
+
+TEST(VtuErrors, NameTheArrayAndItsFault) {
+  EXPECT_THAT(changed_vtu("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""),
+              HasSubstr("points have '2' components instead of 3."));
+  EXPECT_THAT(changed_vtu("\"Int32\" Name=\"offsets\"", "\"Float32\" Name=\"offsets\""),
+              HasSubstr("array 'offsets' has to be of integers."));
+  EXPECT_THAT(changed_vtu("format=\"ascii\">0 1 2 3", "format=\"binary\">???"),
+              HasSubstr("the data are cut short in their header, or are no base64"));
+  EXPECT_THAT(changed_vtu("\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3",
+                          "\"UInt64\" Name=\"connectivity\" format=\"binary\">"
+                          "IAAAAP//////////////////////////////////////////"),
+              HasSubstr("18446744073709551615 is too large a number"));
+  EXPECT_THAT(changed_vtu("Name=\"types\"", "Name=types"),
+              HasSubstr("an attribute has no value in quotes."));
+  std::string appended = vtu(kPoints, cells("0 1 2 3", "4", "10"));
+  appended.replace(appended.find("format=\"ascii\">0 1 2 3"), 14,
+                   "format=\"appended\" offset=\"9000\"");
+  appended.replace(appended.find("</VTKFile>"), 0,
+                   "<AppendedData encoding=\"raw\">_1234</AppendedData>\n");
+  EXPECT_THAT(message("a.vtu", appended),
+              HasSubstr("the offset '9000' lies outside of the appended data"));
 }
 
 }  // namespace
