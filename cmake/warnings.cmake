@@ -1,4 +1,4 @@
-# Warnings are errors in our presets and tests, where POLHODE_WERROR is set; users may have newer compilers.
+# Warnings are errors in our tests, where scripts/test.sh sets POLHODE_WERROR; users may have newer compilers.
 function(polhode_enable_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     $<$<BOOL:${POLHODE_WERROR}>:-Werror>

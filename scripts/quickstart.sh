@@ -35,6 +35,6 @@ Where to look:
   build/first_run/n_four_bar.results/paraview/results.pvd moving shapes, for ParaView
 Next:
   $polhode examples          what else there is
-  $polhode run --help        how runs are told what to do
+  $polhode run --help        options of a run
   README.md                  a tour of five minutes
 END

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the models and commands of the quick starts unchanged, and checks every complete model of the other pages.
+"""Runs the models and commands of the quick starts unchanged, compares what README shows with what the program prints,
+and checks every complete model of the other pages.
 
 Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
 after the other in one folder. POLHODE names the program. With page names as arguments only those are run.
@@ -46,6 +47,30 @@ def run_page(page):
     return count, faults
 
 
+def label(line):
+    """First column of a line of output, without numbers: what does not depend on the machine."""
+    return re.sub(r"[-+.\d]+(e[-+]\d+)?", "#", re.split(r"\s{2,}", line.strip())[0])
+
+
+def compare_readme():
+    """Faults of README: consoles whose commands print other lines than those shown."""
+    text = (ROOT / "README.md").read_text()
+    model = re.search(r"^```yaml\n(format: .*?)^```$", text, re.M | re.S)[1]
+    faults = []
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "pendulum.yaml"
+        path = f"{pathlib.Path(POLHODE).resolve().parent}:{os.environ['PATH']}"
+        consoles = re.findall(r"^```console\n\$ (polhode .*?)\n(.*?)^```$", text, re.M | re.S)
+        for command, shown in consoles:
+            file.write_text(model.replace("[upper, lower]", "[upper, lover]") if "lover" in shown else model)
+            done = subprocess.run(command, shell=True, cwd=folder, env={**os.environ, "PATH": path}, check=False, timeout=240,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            printed, wanted = (sorted(map(label, text.splitlines())) for text in (done.stdout, shown))
+            if printed != wanted:
+                faults.append(f"README.md: '{command}' prints other lines\n{done.stdout}")
+    return faults + ([] if len(consoles) == 4 else [f"README.md has {len(consoles)} consoles"])
+
+
 def check_models(page):
     """Faults that `polhode check` finds in the complete models of a page, and the number of models. Parts of models are skipped."""
     models, name = [], None
@@ -73,6 +98,8 @@ def main(wanted):
         count, faults = run_page(page)
         print(f"{page.name}: {count} commands, {len(faults)} faults")
         problems += faults + ([f"{page.name} has no commands"] if count == 0 else [])
+    if not wanted or "README" in wanted:
+        problems += compare_readme()
     others = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     checked = 0
     for page in others:

@@ -71,9 +71,10 @@ std::string table(const std::vector<std::vector<std::string>>& rows, const std::
 std::string seconds(double value) {
   const double size = std::abs(value);
   if (size == 0.0) return "0 s";
-  if (size < 1e-6) return format("{:.3g} ns", 1e9 * value);
-  if (size < 1e-3) return format("{:.3g} µs", 1e6 * value);
-  if (size < 1.0) return format("{:.3g} ms", 1e3 * value);
+  constexpr double kRoundsUp = 0.9995;  // 999.5 has four digits when it is rounded
+  if (size < kRoundsUp * 1e-6) return format("{:.3g} ns", 1e9 * value);
+  if (size < kRoundsUp * 1e-3) return format("{:.3g} µs", 1e6 * value);
+  if (size < kRoundsUp) return format("{:.3g} ms", 1e3 * value);
   return value < 1000 ? format("{:.3g} s", value) : format("{:.0f} s", value);
 }
 

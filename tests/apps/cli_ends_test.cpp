@@ -81,6 +81,20 @@ analysis: {type: statics}
   EXPECT_EQ(value(json.out, "unstable_directions"), "0");
 }
 
+/// Equations that cannot be solved are no internal error.
+TEST_F(CommandLine, NamesModesThatCannotBeComputed) {
+  write("stiff.yaml", R"(format: 1
+bodies: {bob: {mass: 1, inertia: [1, 1, 1], position: [0, 0, 1]}}
+loads: {spring: {type: spring_damper, bodies: [ground, bob], at: [[0, 0, 0], [0, 0, 1]], stiffness: 1e308}}
+analysis: {type: modes, count: 3}
+)");
+  const auto result = run({"modes", "stiff.yaml"});
+  EXPECT_EQ(result.code, 4);
+  EXPECT_EQ(result.err,
+            "modes: a frequency is not a finite number. Look for a mass, inertia or stiffness that "
+            "is far too small or too large.\n");
+}
+
 TEST_F(CommandLine, PrintsAndWritesNaturalFrequencies) {
   write("swing.yaml", R"(format: 1
 gravity: [0, -10, 0]

@@ -84,10 +84,10 @@ TEST(CheckClosed, CountsOpenEdgesAndLocatesTheFirst) {
 }
 
 TEST(CheckClosed, CountsEdgesOfMoreThanTwoTriangles) {
-  geometry::TriangleSurface crowded = tetrahedron();
-  crowded.triangles.push_back({0, 1, 3});
-  EXPECT_EQ(geometry::edge_report(crowded).crowded, 3);
-  EXPECT_NE(refusal(crowded).find("3 to more than two"), std::string::npos);
+  geometry::TriangleSurface shared = tetrahedron();
+  shared.triangles.push_back({0, 1, 3});
+  EXPECT_EQ(geometry::edge_report(shared).shared, 3);
+  EXPECT_NE(refusal(shared).find("3 to more than two"), std::string::npos);
 }
 
 TEST(CheckClosed, DetectsATriangleOfOppositeOrientation) {

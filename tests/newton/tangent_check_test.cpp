@@ -44,6 +44,8 @@ TEST(CheckTangents, AgreesWithDifferencesForWholeMechanisms) {
 /// A spring to the origin whose tangent has the wrong sign.
 struct WrongSpring : InteractionItem {
   static constexpr const char* kKind = "spring";
+  [[nodiscard]] bool conservative() const { return true; }
+  [[nodiscard]] Work work(const PairStep&) const { return {}; }
   void evaluate(const PairStep& step, PairTerms& t) const {
     t.wrench_b.head<3>() = -100.0 * step.b.r_n1;
     t.D_bb.topLeftCorner<3, 3>() = 100.0 * Mat3::Identity();

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <polhode/core/format.hpp>
 #include <polhode/polhode.hpp>
 
 namespace polhode::two_simulations_tests {
@@ -45,6 +46,40 @@ analysis: {duration: 0.5, step: 0.002}
                              "balls.yaml");
 }
 
+/// Sixty balls that fall on each other, by conjugate gradients or by impulses.
+Model pile(const char* law) {
+  std::string bodies;
+  for (int i = 0; i < 60; ++i)
+    bodies += format("  b{}: {{shape: {{sphere: 0.2}}, mass: 1, position: [{}, {}, {}]}}\n", i,
+                     0.23 * (i % 4) + 0.003 * (i % 7), 0.23 * (i / 4 % 4) + 0.004 * (i % 5),
+                     0.11 + 0.21 * (i / 16));
+  return io::read_model_text(
+      "format: 1\ngravity: [0, 0, -9.81]\ncontacts: {default: {friction: 0.3, law: " +
+          std::string(law) + "}}\nbodies:\n  floor: {fixed: true, shape: {plane: z}}\n" + bodies +
+          "analysis: {duration: 0.05, step: 0.002}\n",
+      "pile.yaml");
+}
+
+/// A pen that leans in the mouth of a tube, and a block of rubber that falls on a box.
+Model surfaces() {
+  return io::read_model_text(R"(
+format: 1
+gravity: [0, 0, -9.81]
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+bodies:
+  floor: {fixed: true, shape: {box: [2, 2, 0.1]}, position: [0, 0, -0.05]}
+  cup: {fixed: true, shape: {tube: [40 mm, 30 mm, 0.1]}, position: [0.5, 0, 0.05]}
+  pen: {shape: {capsule: [10 mm, 0.2]}, density: 1000, position: [0.5, 0, 0.13], orientation: {axis: y, angle: 5 deg}}
+solids:
+  pad:
+    mesh: {block: {size: [0.2, 0.2, 0.1], cells: [2, 2, 1]}, position: [0, 0, 0.052]}
+    material: rubber
+contacts: {default: {friction: 0.3}}
+analysis: {duration: 0.05, step: 0.002}
+)",
+                             "surfaces.yaml");
+}
+
 std::string alone(const Model& model) {
   Simulation simulation(model);
   simulation.run();
@@ -66,7 +101,9 @@ TEST(TwoSimulations, SideBySideAreAsIfAlone) {
 }
 
 TEST(TwoSimulations, InThreadsAreAsIfAlone) {
-  const std::vector<Model> models{swing(2), swing(9), balls(), balls()};
+  const std::vector<Model> models{
+      swing(2),        swing(9),          balls(),           balls(),    pile("barrier"),
+      pile("barrier"), pile("nonsmooth"), pile("nonsmooth"), surfaces(), surfaces()};
   std::vector<std::string> expected, found(models.size());
   for (const Model& model : models) expected.push_back(alone(model));
   std::vector<std::thread> threads;

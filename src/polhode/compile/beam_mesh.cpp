@@ -174,6 +174,7 @@ int add_beam(Model& model, BeamSpec beam) {
   for (std::size_t k = 0; k < count; ++k) {
     BodySpec node;
     node.name = format("{}.{}", beam.name, k);
+    node.node_of = beam.name;
     node.place = beam.place;
     node.position = mesher.nodes[k];
     node.orientation = k == 0 ? beam.mesh[0].frame_1 : beam.mesh[k - 1].frame_2;
@@ -242,6 +243,7 @@ int add_cable(Model& model, CableLineSpec cable) {
     const auto node = [&](const Vec3& at, const Vec3& v) {
       BodySpec n;
       n.name = format("{}.{}", cable.name, static_cast<int>(model.bodies.size()) - first);
+      n.node_of = cable.name;
       n.place = cable.place;
       n.point_mass = true;
       n.position = at;

@@ -207,11 +207,11 @@ class ContactsBuilder {
 };
 
 void check_material(const Model& model, const ContactSide& side, std::vector<InputError>& faults,
-                    std::set<std::string>& told) {
+                    std::set<std::string>& reported) {
   if (!side.material || material_of(model.contacts, side) >= 0) return;
   std::vector<std::string> names;
   for (const ContactMaterialSpec& m : model.contacts.materials) names.push_back(m.name);
-  if (told.insert(side.material_path).second)
+  if (reported.insert(side.material_path).second)
     faults.emplace_back(
         side.material_path, format("unknown contact material '{}'", *side.material),
         names.empty() ? std::string("The model has none: give contacts.materials")
@@ -220,14 +220,14 @@ void check_material(const Model& model, const ContactSide& side, std::vector<Inp
 
 /// Checks that do not need the shapes to be built.
 void check_sides(const Model& model, std::vector<InputError>& faults) {
-  std::set<std::string> told;
+  std::set<std::string> reported;
   bool any = false;
   for (const BodySpec& body : model.bodies)
     for (std::size_t s = 0; s < body.shapes.size(); ++s) {
       const ContactSide side = contact_side(body, s);
       if (!side.touches) continue;
       any = any || !body.fixed;
-      check_material(model, side, faults, told);
+      check_material(model, side, faults, reported);
       if (body.point_mass && !body.fixed) {
         faults.emplace_back(shape_path(body, s),
                             "a point mass cannot touch: contact exerts moments",
@@ -238,13 +238,13 @@ void check_sides(const Model& model, std::vector<InputError>& faults) {
     const ContactSide side = contact_side(solid);
     if (!side.touches) continue;
     any = true;
-    check_material(model, side, faults, told);
+    check_material(model, side, faults, reported);
   }
   for (const CableLineSpec& cable : model.cables) {
     const ContactSide side = contact_side(cable);
     if (!side.touches) continue;
     any = true;
-    check_material(model, side, faults, told);
+    check_material(model, side, faults, reported);
   }
   static_cast<void>(ContactGroups(model, &faults));
   if (!any)

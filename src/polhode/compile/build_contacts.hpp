@@ -38,8 +38,8 @@ struct ContactMap {
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
     const surface_contact::SurfaceContactInterface* touching =
-        nullptr;  ///< That group; owned by the System.
-    /// That group if it is a contact with the mesh of a solid, else null.
+        nullptr;  ///< Contact of that group; owned by the System.
+    /// Contact of that group if it is one with the mesh of a solid, else null.
     const surface_contact::SolidContact* on_mesh = nullptr;
   };
   std::vector<Surface> surfaces;

@@ -36,10 +36,8 @@ const T* pointer(const std::optional<T>& value) {
   return value ? &*value : nullptr;
 }
 
-/// Path of the owner: a node has its beam's name and a number.
 std::string owner_path(const BodySpec& body) {
-  const std::size_t dot = body.name.find('.');
-  return dot == std::string::npos ? "bodies." + body.name : "beams." + body.name.substr(0, dot);
+  return body.node_of.empty() ? "bodies." + body.name : "beams." + body.node_of;
 }
 
 template <class Visit>
@@ -140,11 +138,11 @@ ContactGroups::ContactGroups(const Model& model, std::vector<InputError>* faults
   if (!faults) return;
   std::vector<std::string> names;
   for (const auto& [name, bit] : bits_) names.push_back(name);
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for_sides(model, [&](const ContactSide& side) {
     if (!side.meets) return;
     for (const std::string& name : *side.meets)
-      if (!bits_.contains(name) && told.insert(side.meets_path + name).second)
+      if (!bits_.contains(name) && reported.insert(side.meets_path + name).second)
         faults->emplace_back(side.meets_path, format("no shape belongs to the group '{}'", name),
                              did_you_mean(name, names) + "Groups: " + name_list(names));
   });

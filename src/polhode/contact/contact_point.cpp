@@ -302,13 +302,13 @@ class Evaluation {
       if (f.torsion > 0.0) {
         const Cone<T> cone{(f.torsion / k) * normal_force, 1.0, {}, {}};
         const V3<T> s_0 = cone.nearest(data_.history.torsion * n_);
-        const V3<T> drill = -k * cone.nearest(s_0 + (part * about) * n_);
-        M = M + drill;
+        const V3<T> torsion_moment = -k * cone.nearest(s_0 + (part * about) * n_);
+        M = M + torsion_moment;
         if (report) {
           const Vec3 after = value(cone.nearest(s_0 + about * n_));
           report->after.torsion = after.dot(n);
-          bristle_work(k, value(drill), value(about * n_), data_.history.torsion * n, after, stored,
-                       dissipated);
+          bristle_work(k, value(torsion_moment), value(about * n_), data_.history.torsion * n,
+                       after, stored, dissipated);
         }
       }
       w.moment_a = w.moment_a + M;

@@ -28,8 +28,8 @@ constexpr double kFast = 0.02;
 /// Whether a feature pair is of two edges, or of an edge and a rim.
 bool is_of_edges(GapKind kind) { return kind == GapKind::edge_edge || kind == GapKind::rim_edge; }
 
-/// Corrects the gap of the inner rim of a tube and an edge, as mend_edges().
-bool mend_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
+/// Corrects the gap of the inner rim of a tube and an edge, as correct_edges().
+bool correct_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
   const geometry::Shape::Edge& f = d.b->edges[d.pair.j];
   const Vec3 n = value(g.normal), c = value(g.point);
   const Vec3 p = b.r_n + b.Lambda_n * d.b->corners[f.i];
@@ -46,8 +46,8 @@ bool mend_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<doub
 /// Corrects the gap of two edges. Edges are in contact where they cross; their ends are corners,
 /// which are paired with the whole solid. Whether the cores have passed through each other follows
 /// from the outward sides of the edges.
-bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
-  if (d.pair.kind == GapKind::rim_edge) return mend_rim(d, a, b, g);
+bool correct_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
+  if (d.pair.kind == GapKind::rim_edge) return correct_rim(d, a, b, g);
   const geometry::Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
   const auto inner = [](const geometry::Shape& s, const geometry::Shape::Edge& edge,
                         const BodyStep& step, const Vec3& x) {
@@ -210,7 +210,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     if (is_of_edges(p.data.pair.kind)) {
       if (!acted && least_gap_at_end(p, a, b) > 0.0) continue;
       at = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
-      if (!mend_edges(p.data, a, b, at)) continue;
+      if (!correct_edges(p.data, a, b, at)) continue;
     }
     ImpulsePoint point = impulse_point(i, at, steps);
     if (!acted && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
@@ -257,7 +257,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     } else {
       g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
     }
-    if (is_of_edges(kind)) mend_edges(p.data, a, b, g);
+    if (is_of_edges(kind)) correct_edges(p.data, a, b, g);
     const Vec3 n = value(g.normal);
     if (n.dot(at.normal_n) > kPasses) {
       at.normal = n.normalized();

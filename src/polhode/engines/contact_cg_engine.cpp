@@ -24,17 +24,17 @@ constexpr int kCoarseIterations = 2, kMaxInner = 400;
 /// Residual, in weights, below which friction forces follow the normal forces within an increment,
 /// and number of search directions for that: at larger residuals sliding points change too much.
 constexpr double kFrictionBelow = 1.0;
-constexpr int kCrowdDirections = 3;
+constexpr int kFrictionDirections = 3;
 /// Remaining part of the residual above which an increment needs that coupling of friction.
 constexpr double kSlow = 0.2;
 /// Part of the target residual above which bodies are still moved, together with others within so
 /// many contacts of them. If these are most of all bodies, all are moved.
-constexpr double kLate = 0.02, kMaxCrowd = 0.7;
+constexpr double kLate = 0.02, kMaxMovingPart = 0.7;
 constexpr int kRings = 2;
 /// Line search that asks for a considerable reduction: an increment with hardly any alternates
 /// between sticking and sliding, and half of it gives nearly the whole reduction.
 constexpr LineSearchRule kReduceMuch{0.25, 2, 0.1, 0.5, 0.25};
-constexpr double kCrowdRoundOff = 4.4e-16;
+constexpr double kPositionRoundOff = 4.4e-16;
 /// Remaining violation of joint rows that is accepted if iterations do not reduce it, as a part of
 /// ℓ.
 constexpr double kRowsHold = 1e-12;
@@ -266,7 +266,7 @@ void ContactCgEngine::move_late() {
   moving_.clear();
   for (std::size_t b = 0; b < n; ++b)
     if (moves_[b]) moving_.push_back(static_cast<int>(b));
-  if (static_cast<double>(moving_.size()) > kMaxCrowd * static_cast<double>(n)) move_all();
+  if (static_cast<double>(moving_.size()) > kMaxMovingPart * static_cast<double>(n)) move_all();
 }
 
 void ContactCgEngine::add_wrenches(const InteractionRef& ref, const PairTerms& t) {
@@ -300,7 +300,7 @@ bool ContactCgEngine::rows_hold() const {
   if (rows_.empty()) return true;
   double far = system_->length_scale();
   for (const int b : coupled_) far = std::max(far, far_[b]);
-  return rows_off_ <= 4.0 * kCrowdRoundOff * far ||
+  return rows_off_ <= 4.0 * kPositionRoundOff * far ||
          (rows_off_ <= kRowsHold * far && rows_off_ > 0.5 * rows_off_before_);
 }
 
@@ -349,7 +349,7 @@ void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
   residual_ = std::sqrt(worst) / weight_;
   // Residual forces act in every step: the tolerance decreases with the step.
   const double asked = tolerance_ * std::min(1.0, std::abs(context.dt) / kWholeStep);
-  enough_ = std::max(asked, kCrowdRoundOff * noise / weight_);  // no residual can be smaller
+  enough_ = std::max(asked, kPositionRoundOff * noise / weight_);  // no residual can be smaller
   evaluated_ = true;
 }
 
@@ -362,7 +362,7 @@ bool ContactCgEngine::solve(const Trial& trial) {
   cg_.set_ties(ties_);
   if (!rows_.empty() && !cg_.set_rows(rows_)) return false;
   inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMaxInner,
-                      slow_ && residual_ < kFrictionBelow ? kCrowdDirections : 0);
+                      slow_ && residual_ < kFrictionBelow ? kFrictionDirections : 0);
   start_lambda_.clear();
   for (const int row : row_number_) start_lambda_.push_back(trial.lambda[row]);
   rows_off_before_ = rows_off_;

@@ -77,7 +77,6 @@ void SparseEngine::set_up() {
   if (nodes_) pair_changes_ = nodes_->pair_changes();
   solver_->analyse(newton_.topology());
   factored_ = false;
-  ++analyses_;
 }
 
 /// Limits the prediction like every increment.

@@ -48,8 +48,6 @@ class SparseEngine final : public NewtonEngine {
   [[nodiscard]] const linear::LinearSolver& solver() const { return *solver_; }
   /// Nodes of solids, null without any.
   [[nodiscard]] const CondensedNodes* nodes() const { return nodes_ ? &*nodes_ : nullptr; }
-  /// Number of analyses of the matrix.
-  [[nodiscard]] int analyses() const { return analyses_; }
 
  private:
   void set_up();
@@ -75,7 +73,7 @@ class SparseEngine final : public NewtonEngine {
   double part_ = 1.0;       ///< Applied part of x_.
   bool factored_ = false;
   int pair_changes_ = 0;  ///< Of nodes_, at the last set_up().
-  int analyses_ = 0, worst_body_ = -1;
+  int worst_body_ = -1;
 };
 
 }  // namespace polhode

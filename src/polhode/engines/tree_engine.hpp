@@ -65,7 +65,7 @@ class TreeEngine final : public NewtonEngine {
   InteractionSweep sweep_;       ///< Of interactions outside both the tree and LoopJoints.
   std::vector<BodyStep> steps_;  ///< By body, the ground last; only where needed.
   std::vector<int> touched_;     ///< Bodies of those.
-  /// How the multipliers of direction rows follow from a loop joint's couple.
+  /// Multipliers of direction rows by a loop joint's couple.
   struct Couple {
     Mat3 dual, by_a, by_b;
   };

@@ -42,7 +42,7 @@ class NewtonEngine {
   /// Whether increments may grow for a while, as when strongly compressed bodies separate.
   [[nodiscard]] virtual bool may_grow() const { return false; }
   /// Adds force [N] and moment about the origin [N m] of ground joints that the engine sums itself,
-  /// at the converged trial; `knows_ground(interaction)` tells which.
+  /// at the converged trial; those for which knows_ground(interaction) is true.
   virtual void add_ground_wrench(double* /*force*/, double* /*moment*/) const {}
   [[nodiscard]] virtual bool knows_ground(int /*interaction*/) const { return false; }
   /// Energy stored at a state by forces of the engine's own, such as contacts [J].

@@ -64,7 +64,7 @@ EdgeReport edge_report(const TriangleSurface& surface) {
     if (users == 1)
       ++report.open;
     else if (users > 2)
-      ++report.crowded;
+      ++report.shared;
     else if (!sound)
       ++report.opposed;
     if (!sound && report.first.empty())
@@ -83,11 +83,11 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
   const char* hint =
       "A density needs a closed surface: repair it in the program that made it, or give mass and "
       "inertia";
-  if (report.open + report.crowded > 0)
+  if (report.open + report.shared > 0)
     throw InputError(where,
                      format("the surface is not closed: {} of its edges belong to one triangle "
                             "only and {} to more than two, the first {}",
-                            report.open, report.crowded, report.first),
+                            report.open, report.shared, report.first),
                      hint);
   if (report.opposed > 0)
     throw InputError(where,

@@ -20,11 +20,11 @@ struct TriangleSurface {
 /// opposite directions.
 struct EdgeReport {
   int open = 0;       ///< Edges of one triangle only.
-  int crowded = 0;    ///< Edges of three triangles or more.
+  int shared = 0;     ///< Edges of three triangles or more.
   int opposed = 0;    ///< Edges of two triangles with opposite orientation.
   std::string first;  ///< Description of the first invalid edge; empty if there is none.
 
-  [[nodiscard]] bool closed() const { return open + crowded + opposed == 0; }
+  [[nodiscard]] bool closed() const { return open + shared + opposed == 0; }
 };
 
 /// Counts the edges at which the surface is not closed or not consistently oriented.
@@ -32,7 +32,7 @@ struct EdgeReport {
 
 /// Rejects a surface without triangles, one that is not closed, and one that encloses no volume.
 /// @param where  File or path in the user's model, first part of the message.
-/// @throws InputError that counts the invalid edges and tells where the first one is.
+/// @throws InputError that counts the invalid edges and says where the first one is.
 void check_closed(std::string_view where, const TriangleSurface& surface);
 
 /// Volume enclosed [m³]; negative when the triangles face inward.

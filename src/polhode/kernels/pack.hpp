@@ -299,8 +299,5 @@ POLHODE_INLINE PM load9(const double (*x)[8], int at) {
 POLHODE_INLINE void store9(double (*x)[8], int at, const PM& m) {
   for (int i = 0; i < 9; ++i) store(x[i] + at, m[i]);
 }
-POLHODE_INLINE V3<double> of_lane(const double (*x)[8], int lane) {
-  return {x[0][lane], x[1][lane], x[2][lane]};
-}
 
 }  // namespace polhode::POLHODE_ISA

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <klu.h>
 
-#include <stdexcept>
-
 #include <polhode/core/assert.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/linear/kkt_matrix.hpp>
 #include <polhode/linear/sparse_solvers.hpp>
 
@@ -64,7 +64,10 @@ void KluSolver::analyse(const KktTopology& topology) {
   matrix_ = KktMatrix(topology);
   if (matrix_.size() == 0) return;
   symbolic_ = klu_analyze(matrix_.size(), starts(), rows(), &common_);
-  if (!symbolic_) throw std::logic_error("KLU refuses the pattern of the linear system");
+  if (!symbolic_)
+    throw SolveError(
+        format("The matrix of bodies and joints could not be analysed (KLU {})", common_.status),
+        "Run a smaller model, or choose another solver");
 }
 
 bool KluSolver::factor(const KktValues& values) {

@@ -25,6 +25,8 @@ void append_part(Model& whole, Model part, const std::string& prefix) {
     for (auto& spec : specs) spec.name = prefix + spec.name;
   };
   rename(part.bodies);
+  for (BodySpec& body : part.bodies)
+    if (!body.node_of.empty()) body.node_of = prefix + body.node_of;
   rename(part.joints);
   rename(part.loads);
   rename(part.materials);

@@ -54,7 +54,7 @@ struct ControllerSpec {
   std::optional<double> sample;  ///< Time between samples [s]; none: continuous.
   // PID: proportional·e + integral·∫e dt + derivative·ė, ė through a lag of `filter` [s].
   double proportional = 0.0, integral = 0.0, derivative = 0.0, filter = 0.0;
-  /// Or a transfer function: coefficients of polynomials in s, the highest power first.
+  /// Transfer function instead of a PID: coefficients of polynomials in s, the highest power first.
   std::vector<double> numerator, denominator;
   double least = -std::numeric_limits<double>::infinity();  ///< Of the output.
   double most = std::numeric_limits<double>::infinity();

@@ -57,6 +57,7 @@ struct BodySpec {
   Vec3 velocity = Vec3::Zero();  ///< Of the centre of mass, world [m/s].
   Vec3 angular_velocity = Vec3::Zero();  ///< World [rad/s].
   std::vector<ShapeSpec> shapes;         ///< In the user's body coordinates (subtract com for Z).
+  std::string node_of;                   ///< Name of the beam or cable it is a node of, or empty.
   ContactSideSpec contact;               ///< Of all its shapes.
 };
 

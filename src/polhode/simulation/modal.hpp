@@ -21,7 +21,7 @@ class ModalAnalysis {
   ///         mass or a solid has a velocity.
   explicit ModalAnalysis(Model model);
 
-  /// Whether an equilibrium was found; if not, message() tells why, and there are no modes.
+  /// Whether an equilibrium was found; if not, message() says why, and there are no modes.
   [[nodiscard]] bool converged() const { return message_.empty(); }
   [[nodiscard]] const std::string& message() const { return message_; }
   [[nodiscard]] const Model& model() const { return simulation_->model(); }

@@ -219,7 +219,7 @@ class Simulation {
  private:
   /// Takes a step and handles its events.
   StepReport advance(double t_limit);
-  /// Executes all events that are due. @returns false if one cannot be executed; the report tells
+  /// Executes all events that are due. @returns false if one cannot be executed; the report says
   /// why.
   bool let_events_come(StepReport& report);
   [[nodiscard]] Vec3 node_velocity(int node) const;

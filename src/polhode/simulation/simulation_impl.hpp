@@ -175,7 +175,7 @@ struct Simulation::Impl {
   /// @param before  Start of the step. @param margin  EventWatch::margin() there.
   void find_event(const Simulation& simulation, const Reached& before, double margin, double limit,
                   StepReport& report);
-  /// Evaluates the controllers; the report tells if one cannot act.
+  /// Evaluates the controllers; the report says if one cannot act.
   void let_act(const Simulation& simulation, StepReport& report) {
     const Controllers::Acted acted = controllers->act(simulation, state);
     if (acted.any) instant_step = -1;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/statics/modal_matrices.hpp>
 #include <polhode/statics/modes.hpp>
@@ -291,6 +292,10 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   if (!options.spin.empty()) check_steady(system, equilibrium, options, m, report);
   std::vector<Mode> modes =
       report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);
+  for (const Mode& mode : modes)
+    if (!std::isfinite(std::abs(mode.eigenvalue)))
+      throw SolveError("modes: a frequency is not a finite number",
+                       "Look for a mass, inertia or stiffness that is far too small or too large");
   name_free(system, equilibrium, m, modes);
   const bool asked = options.count != ModeOptions{}.count;  // otherwise the default count
   if (modes.empty() || (asked && static_cast<int>(modes.size()) < options.count))

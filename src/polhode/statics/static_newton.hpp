@@ -57,7 +57,6 @@ class StaticNewton {
   [[nodiscard]] const std::vector<double>& node_residual() const { return held_; }
   /// Measures the last assembly: largest unbalanced force, and the largest force [N].
   void measure(StaticStep& step) const;
-  [[nodiscard]] bool has_mixed_points() const { return mixed_; }
   /// Softest motion at the last equilibrium found.
   [[nodiscard]] SoftestMotion softest();
 

@@ -12,7 +12,7 @@ class StepReach {
  public:
   /// Adds an accepted step. @param noise  Accepted because shorter steps have no smaller error.
   void count(double t, double error, double asked, bool noise);
-  /// Nothing, or one sentence with what to do.
+  /// Warnings of a run: none, or one sentence with what to do.
   [[nodiscard]] std::vector<std::string> warnings(double tolerance, int order) const;
 
  private:

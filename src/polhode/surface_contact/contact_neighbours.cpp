@@ -8,9 +8,10 @@ namespace polhode::surface_contact {
 
 namespace {
 
-/// Search radius, at least this part of an edge, ...
+/// Smallest search radius, as a part of an edge.
 constexpr double kLook = 0.3;
-/// ... and at least the relative displacement of the surfaces in this many steps like the last one.
+/// Number of steps like the last one whose relative displacement of the surfaces the search radius
+/// covers.
 constexpr double kLookSteps = 5.0;
 /// Number of steps like the last one that must remain; with fewer the search is repeated.
 constexpr double kStepsLeft = 2.0;

@@ -88,8 +88,8 @@ struct FourSlide {
   Eigen::Matrix<double, 12, 12> K = Eigen::Matrix<double, 12, 12>::Zero();    ///< By x_{n+1}.
   Eigen::Matrix<double, 12, 1> by_pressure = Eigen::Matrix<double, 12, 1>::Zero();
 
-  /// @param rub  (pressure in scalar type T, seeded) → an object with force[4], slid and a
-  /// PlaneSliding `rub`, all of type T.
+  /// @param sliding  (pressure in scalar type T, seeded) → an object with force[4], slid and a
+  /// PlaneSliding `sliding`, all of type T.
   /// @param end  The plane or other frame of bristles at t_{n+1}.
   template <class Sliding, class End>
   FourSlide(Sliding&& sliding, const End& end, double pressure, bool tangent) {

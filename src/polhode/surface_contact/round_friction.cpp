@@ -74,8 +74,9 @@ RoundPoint<T> round_point_friction(const FourMoves& moves, double alpha, const S
   const Sides<double> before =
       sides_at(contact::v3(at.x_n[1]), contact::v3(at.x_n[2]), contact::v3(at.x_n[3]));
   const V3<double> s = contact::v3(kept);
-  const double told[3] = {dot(before.grad_e, s), dot(before.grad_f, s), dot(before.normal, s)};
-  V3<T> turned = here.along(told, kept.norm());
+  const double components[3] = {dot(before.grad_e, s), dot(before.grad_f, s),
+                                dot(before.normal, s)};
+  V3<T> turned = here.along(components, kept.norm());
   turned = Sides<T>::scaled(turned - dot(n, turned) * n, kept.norm());
   contact::Cone<T> cone;
   cone.radius = (law.mu / law.bristle) * pressure;

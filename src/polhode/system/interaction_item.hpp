@@ -110,6 +110,9 @@ struct OwnFunctions {
   static constexpr bool acceleration_terms = !requires {
     requires std::same_as<decltype(&Item::acceleration_terms), decltype(&Base::acceleration_terms)>;
   };
+  static constexpr bool conservative = !requires {
+    requires std::same_as<decltype(&Item::conservative), decltype(&Base::conservative)>;
+  };
   static constexpr bool dissipates = !requires {
     requires std::same_as<decltype(&Item::dissipates), decltype(&Base::dissipates)>;
   };
@@ -180,7 +183,9 @@ concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
 };
 
 /// Concept of an item with complete sets of related functions. A misspelt function hides nothing
-/// and is never called; its missing counterpart reveals it here at compile time.
+/// and is never called. At compile time this reveals it if it has a counterpart, or if items of
+/// its kind have to define it; not if it is one of those that stand alone: motion_basis, coupling,
+/// coupled_mass, reach, compliant, time_functions without time_order.
 template <class Item>
 concept Interaction = HasInteractionFunctions<Item> &&
                       // A history needs functions that initialise and commit it.
@@ -192,15 +197,20 @@ concept Interaction = HasInteractionFunctions<Item> &&
                          OwnFunctions<Item>::commit_off || OwnFunctions<Item>::switch_on)) &&
                       // Rows need acceleration terms.
                       OwnFunctions<Item>::rows == OwnFunctions<Item>::acceleration_terms &&
+                      // Forces declare whether they conserve energy, and their work.
+                      (OwnFunctions<Item>::rows ||
+                       (OwnFunctions<Item>::conservative && OwnFunctions<Item>::work)) &&
                       // Dissipative items report their work.
                       (!(OwnFunctions<Item>::dissipates || OwnFunctions<Item>::works) ||
                        OwnFunctions<Item>::work) &&
                       OwnFunctions<Item>::prescribes == OwnFunctions<Item>::prescribed &&
                       (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
-                      OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance &&
-                      (!OwnFunctions<Item>::impacts || OwnFunctions<Item>::has_barrier) &&
+                      OwnFunctions<Item>::has_barrier
+                          == OwnFunctions<Item>::clearance&& OwnFunctions<Item>::has_barrier
+                          == OwnFunctions<Item>::impacts
+                      &&
                       (!(OwnFunctions<Item>::always_queried || OwnFunctions<Item>::refusal) ||
                        OwnFunctions<Item>::acceptable) &&
-                      (!OwnFunctions<Item>::reverse || OwnFunctions<Item>::reversible);
+                      OwnFunctions<Item>::reverse == OwnFunctions<Item>::reversible;
 
 }  // namespace polhode

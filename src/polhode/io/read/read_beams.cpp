@@ -322,6 +322,7 @@ class BeamReader {
     for (int k = 0; k < beam_.node_count(); ++k) {
       context_.model.bodies.emplace_back();
       context_.model.bodies.back().name = format("{}.{}", beam_.name, k);
+      context_.model.bodies.back().node_of = beam_.name;
     }
     context_.model.beams.push_back(beam_);
     name_parts(context_, bodies, context_.model.joints.size(), false);

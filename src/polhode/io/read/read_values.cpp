@@ -107,7 +107,7 @@ void ReadContext::fault(const SourceNode& node, const std::string& path, std::st
 std::vector<std::string> ReadContext::body_names() const {
   std::vector<std::string> names = {"ground"};
   for (const BodySpec& body : model.bodies)  // nodes of beams: their ends represent them
-    if (body.name.find('.') == std::string::npos) names.push_back(body.name);
+    if (body.node_of.empty()) names.push_back(body.name);
   for (const BeamSpec& beam : model.beams)
     for (const char* end : {".start", ".end"}) names.push_back(beam.name + end);
   return names;

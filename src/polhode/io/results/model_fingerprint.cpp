@@ -140,12 +140,13 @@ class Fingerprint {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,
         s.on_surface, s.tolerance, s.nodes);
   }
+  void one(const PartAxes& p) { add(p.origin, p.axes, p.body_axes, p.sense); }
   void one(const LoadSpec& l) {
     add(l.name, l.type, l.a, l.b, l.joint, l.coordinate, l.drive, l.Z_a, l.Z_b, l.body_fixed,
         l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters, l.laws, l.words,
         l.matrices, l.joint_2, l.coordinate_2, l.R_a, l.R_b);
     // Functions in code are represented by their presence only.
-    if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()));
+    if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()), l.part_axes);
   }
   // By hand: not in the order of the table.
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
