@@ -222,6 +222,14 @@ TEST(BlockCg, SatisfiesRowsAsADirectSolverDoes) {
   }
 }
 
+/// Sets bodies, springs and rows. @returns the solution for the forces numbers(40, 5).
+Constrained set_with_rows(linear::BlockCg& cg, const ManyBodies& c,
+                          const std::vector<linear::BlockCg::Row>& rows) {
+  set(cg, c);
+  EXPECT_TRUE(cg.set_rows(rows));
+  return solve_directly(assembled(c), rows, flat(numbers(40, 5)));
+}
+
 /// Two chains of bodies between stiff springs, each of which ends in bodies connected by rows,
 /// which are swept together: one iteration solves the system to single precision. Rows come in no
 /// order.
@@ -241,13 +249,10 @@ TEST(BlockCg, NeedsOneIterationWithRowsWhereNoContactsFormALoop) {
       if (a == kGround && k >= 8) continue;
       rows.push_back({a, b, G[2 * k], G[2 * k + 1], 0.1 * G[k][0]});
     }
-    const std::vector<Vec6> rhs = numbers(40, 5);
-    const Constrained reference = solve_directly(assembled(c), rows, flat(rhs));
     linear::BlockCg cg;
-    set(cg, c);
-    ASSERT_TRUE(cg.set_rows(rows));
     std::vector<Vec6> x;
-    cg.solve(rhs, x, 0.0, 1, 0);
+    const Constrained reference = set_with_rows(cg, c, rows);
+    cg.solve(numbers(40, 5), x, 0.0, 1, 0);
     EXPECT_LT((flat(x) - reference.x).norm(), 2e-4 * reference.x.norm()) << connected;
     EXPECT_LT((reference.G * flat(x) + reference.g).norm(), 1e-5 * flat(x).norm()) << connected;
     const Vec carried = reference.G.transpose() * cg.multipliers();
@@ -265,13 +270,10 @@ TEST(BlockCg, SolvesForGroupsThatTouchEachOther) {
     const int a = 2 * (k % 19);
     rows.push_back({a, a + 1, G[2 * k], G[2 * k + 1], 0.0});
   }
-  const std::vector<Vec6> rhs = numbers(40, 5);
-  const Constrained reference = solve_directly(assembled(c), rows, flat(rhs));
   linear::BlockCg cg;
-  set(cg, c);
-  ASSERT_TRUE(cg.set_rows(rows));
   std::vector<Vec6> x;
-  EXPECT_LT(cg.solve(rhs, x, 1e-11, 2000, 0), 200);
+  const Constrained reference = set_with_rows(cg, c, rows);
+  EXPECT_LT(cg.solve(numbers(40, 5), x, 1e-11, 2000, 0), 200);
   EXPECT_LT((flat(x) - reference.x).norm(), 1e-3 * reference.x.norm());
 }
 

@@ -205,10 +205,8 @@ concept Interaction = HasInteractionFunctions<Item> &&
                        OwnFunctions<Item>::work) &&
                       OwnFunctions<Item>::prescribes == OwnFunctions<Item>::prescribed &&
                       (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
-                      OwnFunctions<Item>::has_barrier
-                          == OwnFunctions<Item>::clearance&& OwnFunctions<Item>::has_barrier
-                          == OwnFunctions<Item>::impacts
-                      &&
+                      (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance) &&
+                      (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::impacts) &&
                       (!(OwnFunctions<Item>::always_queried || OwnFunctions<Item>::refusal) ||
                        OwnFunctions<Item>::acceptable) &&
                       OwnFunctions<Item>::reverse == OwnFunctions<Item>::reversible;
