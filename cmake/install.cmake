@@ -17,5 +17,5 @@ write_basic_package_version_file(polhodeConfigVersion.cmake COMPATIBILITY SameMi
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/polhodeConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/polhodeConfigVersion.cmake
   DESTINATION ${POLHODE_PACKAGE_DIR} COMPONENT development)
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command OPTIONAL)
+install(FILES LICENSE THIRD_PARTY.md README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command OPTIONAL)
 include(cmake/package.cmake)

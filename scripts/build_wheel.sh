@@ -40,6 +40,18 @@ for binary in "$root"/polhode/_native*.so "$root"/polhode/bin/polhode; do
   # What is opened by name is looked for where the opener says.
   patchelf --print-rpath "$binary" | grep -q polhode.libs
 done
+# The licence of each library that travels along, as its Debian package states it, and the texts these refer to.
+licences=$(echo "$root"/polhode-*.dist-info)/licenses
+mkdir -p "$licences"
+for library in "$root"/polhode.libs/*; do
+  name=$(basename "$library" | sed 's/-[0-9a-f]\{8\}\(\.so\|-\|\.\)/\1/')
+  owner=$({ dpkg-query -S "*/$name" || dpkg-query -S "*/${name%%.so*}.so*"; } 2>/dev/null | head -1 | sed 's/:.*//')
+  [ -n "$owner" ] && [ -f "/usr/share/doc/$owner/copyright" ] || { echo "$name: there is no licence of it" >&2; exit 1; }
+  cp "/usr/share/doc/$owner/copyright" "$licences/$owner.txt"
+done
+for text in $(grep -ho '/usr/share/common-licenses/[-A-Za-z0-9.]*[0-9A-Za-z]' "$licences"/*.txt | sort -u); do
+  cp -L "$text" "$licences/$(basename "$text").txt"
+done
 mkdir -p dist
 rm -f dist/polhode-*.whl
 "$python" -m wheel pack --dest dist "$root" >/dev/null

@@ -35,6 +35,14 @@ if "_hashlib" in sys.modules and "libcrypto" in inside:  # NumPy 1 loads that mo
     strange = [m for m in strange if not re.search(r"/lib(crypto|ssl)[.]", m)]
 assert not strange, f"of the system: {strange}"
 assert "libdmumps_seq" in inside and any("blas" in name for name in inside), inside
+# What travels along is listed with its licence: in the package, by the command, and beside the libraries.
+from importlib import metadata
+
+licences = [str(f) for f in metadata.files("polhode") if "licenses" in str(f)]
+for part in ["THIRD_PARTY.md", "LICENSE", "mumps", "openblas", "hdf5", "LGPL-2.1"]:
+    assert any(part in name for name in licences), (part, licences)
+told = subprocess.run([command, "doctor", "--licences"], check=True, capture_output=True, text=True).stdout
+assert told == open(polhode.__path__[0] + "/THIRD_PARTY.md").read() and "three.js" in told
 import numpy as np
 
 m = polhode.Model(analysis={"duration": 1, "step": 0.01})

@@ -12,12 +12,15 @@ const options = { absWorkingDir: root, bundle: true, minify: true, write: false,
   legalComments: "none", logLevel: "error" };
 const script = await build({ ...options, entryPoints: ["src/main.ts"], format: "iife" });
 const style = await build({ ...options, entryPoints: ["src/style.css"], loader: { ".css": "css" } });
-const licences = ["three", "uplot"].map((name) => {
-  const about = JSON.parse(readFileSync(join(root, "node_modules", name, "package.json"), "utf8"));
-  return `${name} ${about.version} (${about.license})`;
-}).join(", ");
+const parts = ["three", "uplot"].map((name) => {
+  const file = (path) => readFileSync(join(root, "node_modules", name, path), "utf8");
+  return { name, about: JSON.parse(file("package.json")), licence: file("LICENSE").replaceAll("\u00a9", "(c)").trim() };
+});
+const licences = parts.map(({ name, about }) => `${name} ${about.version} (${about.license})`).join(", ");
+// Both licences require their text in every copy. It is a part of the script, which may be stored apart from the page.
+const notices = parts.map(({ name, about, licence }) => `/*! ${name} ${about.version}\n\n${licence}\n*/\n`).join("");
 
-const js = script.outputFiles[0].text.replaceAll("</script", "<\\/script").trim();
+const js = notices + script.outputFiles[0].text.replaceAll("</script", "<\\/script").trim();
 const css = style.outputFiles[0].text.trim();
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 const policy = `default-src 'none'; script-src ${hash(js)}; style-src ${hash(css)}; img-src data: blob:; connect-src 'self'; ` +

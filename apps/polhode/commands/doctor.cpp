@@ -14,6 +14,7 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "licences_text.hpp"
 
 namespace polhode::cli {
 
@@ -119,6 +120,15 @@ int doctor() {
 
 }  // namespace
 
-Action add_doctor(CLI::App&) { return doctor; }
+Action add_doctor(CLI::App& command) {
+  const auto licences = std::make_shared<bool>(false);
+  command.add_flag("--licences,--licenses", *licences,
+                   "Print what the program contains, with its licences");
+  return [licences] {
+    if (!*licences) return doctor();
+    print(licences_text());
+    return static_cast<int>(kOk);
+  };
+}
 
 }  // namespace polhode::cli

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 
@@ -91,6 +92,24 @@ std::string text_of(const ExamplesOptions& options) {
                    format("{}Examples: {}", did_you_mean(options.name, names), name_list(names)));
 }
 
+/// Writes the files that the model of an example names, into the folder of the model. A file that
+/// exists with another content is not replaced.
+void write_files(const ExamplesOptions& options) {
+  if (is_generated(options.name)) return;
+  for (const ExampleText& example : example_texts()) {
+    if (example.name != options.name) continue;
+    for (const ExampleFile& file : example.files) {
+      const std::filesystem::path folder = std::filesystem::path(options.output).parent_path();
+      const std::string path = (folder / file.name).string();
+      if (std::filesystem::exists(path) && io::read_file(path) != file.text)
+        throw io::FileError(path, "exists with another content, and the example needs this name",
+                            "Write the example into another folder");
+      io::write_file_atomically(path, file.text);
+      say(format("The model needs {}, which was written, too.", path));
+    }
+  }
+}
+
 }  // namespace
 
 Action add_examples(CLI::App& command) {
@@ -100,11 +119,14 @@ Action add_examples(CLI::App& command) {
       ->take_all()
       ->expected(1)
       ->type_name("NAME=VALUE");
-  command.add_option("-o,--output", options->output, "File to write; left out: stdout")
+  command
+      .add_option("-o,--output", options->output,
+                  "File to write, with its meshes beside it; left out: stdout")
       ->type_name("FILE");
   return [options] {
     try {
       const std::string text = options->name.empty() ? listing() : text_of(*options);
+      write_files(*options);
       if (options->output.empty())
         print(text);
       else

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace polhode::cli {
+
+/// What the program contains, with the licences: THIRD_PARTY.md as of the build.
+[[nodiscard]] const char* licences_text();
+
+}  // namespace polhode::cli
