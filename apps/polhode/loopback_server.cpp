@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "loopback_server.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
-#include <csignal>
+#include <list>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -15,41 +20,20 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
+#include "console.hpp"
+
 namespace polhode::cli {
 
 namespace {
 
 constexpr std::size_t kLongestRequest = 16384;
-constexpr int kPatience = 5000;  ///< Timeout of a slow request [ms].
-
 constexpr std::size_t kLargestBody = std::size_t{1} << 30;
-
-/// Appends received text. @returns whether there was any.
-bool receive(int connection, std::string& text) {
-  std::array<char, 65536> part{};
-  pollfd waiting{connection, POLLIN, 0};
-  if (::poll(&waiting, 1, kPatience) <= 0) return false;
-  const ssize_t got = ::recv(connection, part.data(), part.size(), 0);
-  if (got > 0) text.append(part.data(), static_cast<std::size_t>(got));
-  return got > 0;
-}
-
-/// Header of a request and the text received after it; empty if the header is incomplete.
-std::string read_head(int connection) {
-  std::string head;
-  while (head.find("\r\n\r\n") == std::string::npos)
-    if (head.size() >= kLongestRequest || !receive(connection, head)) return "";
-  return head;
-}
-
-void send_all(int connection, const std::string& bytes) {
-  std::size_t sent = 0;
-  while (sent < bytes.size()) {
-    const ssize_t n = ::send(connection, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-    if (n <= 0) return;
-    sent += static_cast<std::size_t>(n);
-  }
-}
+/// Clients at a time; of more, the one that has been silent longest is dropped.
+constexpr std::size_t kMostClients = 64;
+/// Longest silence of a client [s].
+constexpr double kPatience = 5.0;
+/// Interval at which `stop` is looked at [ms].
+constexpr int kLook = 200;
 
 /// Value of a header line; `name` is in lower case.
 std::string value_of(const std::string& head, const std::string& name) {
@@ -65,21 +49,21 @@ std::string value_of(const std::string& head, const std::string& name) {
   return "";
 }
 
-/// Body of a request; nothing if the connection ends before it is complete.
-std::optional<std::string> read_body(int connection, const std::string& head) {
+/// Bytes of the body that a header announces; nothing if it does not say so, or more than allowed.
+std::optional<std::size_t> body_size(const std::string& head) {
   const std::string length = value_of(head, "content-length");
   std::size_t size = 0;
   const auto [stop, fault] = std::from_chars(length.data(), length.data() + length.size(), size);
   if (fault != std::errc() || size > kLargestBody) return std::nullopt;
-  std::string body = head.substr(head.find("\r\n\r\n") + 4);
-  while (body.size() < size)
-    if (!receive(connection, body)) return std::nullopt;
-  return body;
+  return size;
 }
 
-WebAnswer answer_to(int connection, const std::string& head, int port, bool takes,
+bool is_sent(const std::string& head) { return head.rfind("POST /", 0) == 0; }
+
+/// @param body  What came after the header, complete.
+WebAnswer answer_to(const std::string& head, std::string body, int port, bool takes,
                     const std::function<WebAnswer(const WebRequest&)>& answer) {
-  const bool sent = takes && head.rfind("POST /", 0) == 0;
+  const bool sent = takes && is_sent(head);
   if (head.rfind("GET /", 0) != 0 && !sent) return {405, "text/plain", "Only GET is answered.\n"};
   const std::string host = value_of(head, "host"), name = host.substr(0, host.rfind(':'));
   if (name != "127.0.0.1" && name != "localhost")
@@ -89,12 +73,83 @@ WebAnswer answer_to(int connection, const std::string& head, int port, bool take
   const std::size_t begin = head.find(' ') + 1;
   WebRequest request{head.substr(begin, head.find_first_of(" ?\r", begin) - begin), sent};
   if (sent) {
-    std::optional<std::string> body = read_body(connection, head);
-    if (!body) return {400, "text/plain", "The request is incomplete.\n"};
-    request.body = std::move(*body);
+    if (!body_size(head)) return {400, "text/plain", "The request is incomplete.\n"};
+    request.body = std::move(body);
   }
   return answer(request);
 }
+
+/// Text of an answer as it is sent.
+std::string message(WebAnswer answer) {
+  return format(
+             "HTTP/1.0 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: "
+             "no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+             answer.status, answer.status == 200 ? "OK" : "Refused", answer.type,
+             answer.body.size()) +
+         std::move(answer.body);
+}
+
+/// A client: its request as far as it has come, then what is still to be sent. Nothing here waits.
+class Client {
+ public:
+  explicit Client(int connection) : connection_(connection), heard_(wall_clock()) {
+    ::fcntl(connection_, F_SETFL, O_NONBLOCK);
+    ::fcntl(connection_, F_SETFD, FD_CLOEXEC);
+  }
+  ~Client() { ::close(connection_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  [[nodiscard]] pollfd wanted() const {
+    return {connection_, static_cast<short>(reply_.empty() ? POLLIN : POLLOUT), 0};
+  }
+  [[nodiscard]] double heard() const { return heard_; }
+  [[nodiscard]] bool over() const { return over_; }
+  /// Does not count a time in which the server was busy as silence.
+  void excuse(double seconds) { heard_ += seconds; }
+
+  /// Takes what has come; a complete request is answered by `answer(head, body)`.
+  template <class Answer>
+  void receive(bool takes, const Answer& answer) {
+    std::array<char, 65536> part{};
+    const ssize_t got = ::recv(connection_, part.data(), part.size(), 0);
+    if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    if (got <= 0) {
+      over_ = true;
+      return;
+    }
+    heard_ = wall_clock();
+    request_.append(part.data(), static_cast<std::size_t>(got));
+    const std::size_t end = request_.find("\r\n\r\n");
+    if (end == std::string::npos) {
+      over_ = request_.size() >= kLongestRequest;
+      return;
+    }
+    const std::size_t head = end + 4;
+    const std::size_t body =
+        takes && is_sent(request_) ? body_size(request_.substr(0, head)).value_or(0) : 0;
+    if (request_.size() < head + body) return;
+    reply_ = answer(request_.substr(0, head), request_.substr(head, body));
+    request_.clear();
+    send();
+  }
+
+  void send() {
+    const ssize_t count =
+        ::send(connection_, reply_.data() + sent_, reply_.size() - sent_, MSG_NOSIGNAL);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    if (count > 0) heard_ = wall_clock();
+    sent_ += static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+    over_ = count <= 0 || sent_ == reply_.size();
+  }
+
+ private:
+  int connection_;
+  double heard_;  ///< Time of the last byte [s].
+  std::string request_, reply_;
+  std::size_t sent_ = 0;
+  bool over_ = false;
+};
 
 }  // namespace
 
@@ -121,22 +176,36 @@ LoopbackServer::~LoopbackServer() { ::close(socket_); }
 
 void LoopbackServer::run(const std::function<WebAnswer(const WebRequest& request)>& answer,
                          const std::atomic<bool>& stop, bool takes) const {
+  std::list<Client> clients;
+  const auto reply = [&](const std::string& head, std::string body) {
+    return message(answer_to(head, std::move(body), port_, takes, answer));
+  };
   while (!stop) {
-    pollfd waiting{socket_, POLLIN, 0};
-    if (::poll(&waiting, 1, 200) <= 0) continue;
+    std::vector<pollfd> waiting{{socket_, POLLIN, 0}};
+    for (const Client& client : clients) waiting.push_back(client.wanted());
+    if (::poll(waiting.data(), static_cast<nfds_t>(waiting.size()), kLook) < 0) continue;
+    const double begin = wall_clock();
+    auto ready = waiting.begin() + 1;
+    for (Client& client : clients) {
+      if (ready->revents != 0) {
+        if (ready->events == POLLOUT)
+          client.send();
+        else
+          client.receive(takes, reply);
+      }
+      ++ready;
+    }
+    const double now = wall_clock();
+    for (Client& client : clients) client.excuse(now - begin);
+    clients.remove_if([&](const Client& c) { return c.over() || now - c.heard() > kPatience; });
+    if (waiting.front().revents == 0) continue;
     const int connection = ::accept(socket_, nullptr, nullptr);
     if (connection < 0) continue;
-    const std::string head = read_head(connection);
-    if (!head.empty()) {
-      const WebAnswer a = answer_to(connection, head, port_, takes, answer);
-      send_all(connection,
-               format("HTTP/1.0 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n"
-                      "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
-                      "Connection: close\r\n\r\n",
-                      a.status, a.status == 200 ? "OK" : "Refused", a.type, a.body.size()) +
-                   a.body);
-    }
-    ::close(connection);
+    if (clients.size() >= kMostClients)
+      clients.erase(
+          std::min_element(clients.begin(), clients.end(),
+                           [](const Client& a, const Client& b) { return a.heard() < b.heard(); }));
+    clients.emplace_back(connection);
   }
 }
 

@@ -21,9 +21,10 @@ struct WebRequest {
   std::string body{};  ///< Received data.
 };
 
-/// Minimal HTTP/1.0 server on 127.0.0.1: answers GET, one connection at a time. Requests with a
-/// Host other than the loopback address are rejected, so that no web site can read results through
-/// a name that resolves to it. POST is accepted if enabled, and only from pages of this server.
+/// Minimal HTTP/1.0 server on 127.0.0.1: answers GET, one request after another. It waits for no
+/// client: one that is slow to ask or to read does not delay the others. Requests with a Host other
+/// than the loopback address are rejected, so that no web site can read results through a name that
+/// resolves to it. POST is accepted if enabled, and only from pages of this server.
 class LoopbackServer {
  public:
   /// @param port  0: any free one. @throws FileError if the port is not available.

@@ -55,19 +55,25 @@ TEST_F(ViewCommand, ReportsErrors) {
   EXPECT_EQ(run({"view", "model.results", "--set", "a=1", "--html", "x.html"}).code, 2);
 }
 
-/// Response of a server on the loopback address to a request.
-std::string response_to(int port, const std::string& request) {
+/// Connection to a server on the loopback address that has sent a text.
+int connection_to(int port, const std::string& request) {
   const int s = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons(static_cast<std::uint16_t>(port));
-  std::string text;
   for (int i = 0; i < 200; ++i) {
     if (::connect(s, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   (void)!::write(s, request.data(), request.size());
+  return s;
+}
+
+/// Response of a server on the loopback address to a request.
+std::string response_to(int port, const std::string& request) {
+  const int s = connection_to(port, request);
+  std::string text;
   std::array<char, 4096> part{};
   for (ssize_t n = 0; (n = ::read(s, part.data(), part.size())) > 0;)
     text.append(part.data(), static_cast<std::size_t>(n));
@@ -97,6 +103,26 @@ TEST_F(ViewCommand, ServesThePageOnTheLoopbackAddressUntilItIsInterrupted) {
   const test::ProgramResult r = program.wait();
   EXPECT_EQ(r.code, 0);
   EXPECT_THAT(r.out, HasSubstr("http://127.0.0.1:" + std::to_string(port)));
+}
+
+// Clients that ask nothing, ask slowly, or do not read, and more of them than the server serves.
+TEST_F(ViewCommand, ServesOthersWhileAClientIsSlow) {
+  const int port = 20000 + static_cast<int>((::getpid() + 7) % 20000);
+  test::Program program =
+      start({"view", "model.yaml", "--port", std::to_string(port), "--no-open"});
+  EXPECT_THAT(get(port, "/stamp"), HasSubstr("200 OK"));
+  std::vector<int> slow;
+  const std::string page = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+  for (int i = 0; i < 40; ++i)
+    for (const std::string& sent : {std::string(), page.substr(0, 10), page})
+      slow.push_back(connection_to(port, sent));
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THAT(get(port, "/scene.json"), HasSubstr("\"title\":\"Double pendulum\""));
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(waited.count(), 4.0);  // below the five seconds for which a client may be silent
+  for (const int s : slow) ::close(s);
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait().code, 0);
 }
 
 TEST_F(ViewCommand, ConvertsByFileExtension) {
