@@ -2,7 +2,6 @@
 #include "parquet.hpp"
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <fcntl.h>
@@ -14,6 +13,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/io/text/output_file.hpp>
 #include <polhode/view/channels.hpp>
 
 #include "child_process.hpp"
@@ -61,10 +61,10 @@ void write_parquet(const io::ResultsReader& results, const std::vector<std::stri
   if (python.empty()) throw missing;
   const std::vector<double> time = results.read(io::results::kTime);
   const std::vector<ChannelColumn> columns = all_columns(results, names);
-  const std::string unfinished = file + ".unfinished";
+  io::UnfinishedFile unfinished(file);
   nlohmann::ordered_json head = {
       {"rows", time.size()},
-      {"file", unfinished},
+      {"file", unfinished.path()},
       {"columns", nlohmann::ordered_json::array()},
       {"about",
        {{"title", results.attribute("/", "title")},
@@ -90,10 +90,9 @@ void write_parquet(const io::ResultsReader& results, const std::vector<std::stri
   ::close(input);
   const int status = child.wait();
   if (status == kNoLibrary) throw missing;
-  std::error_code fault;
-  if (status == 0) std::filesystem::rename(unfinished, file, fault);
-  if (status != 0 || fault)
+  if (status != 0)
     throw io::FileError(file, format("cannot be written: {}", last_line(log)), "Name another file");
+  unfinished.keep(false);
 }
 
 }  // namespace polhode::cli

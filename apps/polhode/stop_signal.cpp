@@ -13,6 +13,10 @@ void catch_stop_signals() {
   action.sa_handler = [](int) { stop_wanted = true; };
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   for (int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  // The end of a session; a program that nohup started ignores it on purpose.
+  struct sigaction present = {};
+  if (sigaction(SIGHUP, nullptr, &present) == 0 && present.sa_handler != SIG_IGN)
+    sigaction(SIGHUP, &action, nullptr);
 }
 
 }  // namespace polhode::cli

@@ -8,7 +8,8 @@ namespace polhode::cli {
 /// Set by Ctrl-C; a run ends after the current step. A second Ctrl-C ends the program at once.
 extern std::atomic<bool> stop_wanted;
 
-/// Installs handlers of SIGINT and SIGTERM that set stop_wanted, once.
+/// Installs handlers of SIGINT, SIGTERM and, unless it is ignored, SIGHUP that set stop_wanted,
+/// once.
 void catch_stop_signals();
 
 }  // namespace polhode::cli

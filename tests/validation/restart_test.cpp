@@ -106,6 +106,18 @@ analysis: {duration: 0.2 s, step: 1 ms}
                              "triangles.yaml");
 }
 
+/// A wheel turned by a sampled controller, whose output is never zero after the first sample.
+Model controlled_wheel() {
+  return io::read_model_text(R"(format: 1
+bodies: {wheel: {mass: 1, inertia: [0.01, 0.02, 0.015]}}
+joints: {axle: {type: revolute, bodies: [ground, wheel], at: [0, 0, 0], axis: z}}
+loads: {motor: {type: rotary_motor, joint: axle, moment: {controller: p}}}
+controllers: {p: {joint: axle, channel: rz, setpoint: 1, proportional: 3, sample: 10 ms}}
+analysis: {duration: 1 s, step: 5 ms}
+)",
+                             "wheel.yaml");
+}
+
 std::vector<RestartCase> cases() {
   return {
       {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
@@ -127,6 +139,8 @@ std::vector<RestartCase> cases() {
       {"RopeOverATube", rope("{tube: [0.1, 0.08, 0.1]}")},
       {"SpheresInABinByImpulses", by_impulses(touching("spheres_in_a_bin", 0.6))},
       {"OnTriangles", on_triangles()},
+      {"ControlledWheel", controlled_wheel()},
+      {"ControlledWheelFinely", with(controlled_wheel(), 1.0, 5e-5, {})},
       {"OnTrianglesByImpulses", by_impulses(on_triangles())},
   };
 }

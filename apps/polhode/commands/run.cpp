@@ -41,9 +41,10 @@ std::string results_folder(const RunOptions& options) {
   return std::filesystem::path(options.model.file).replace_extension(".results").string();
 }
 
-Simulation make_simulation(const RunOptions& options, Model model) {
+/// @param note  Set to what the user should know of a restart.
+Simulation make_simulation(const RunOptions& options, Model model, std::string& note) {
   if (options.restart.empty()) return Simulation(std::move(model));
-  State state = io::read_checkpoint(options.restart, model, build_system(model));
+  State state = io::read_checkpoint(options.restart, model, build_system(model), &note);
   return {std::move(model), std::move(state)};
 }
 
@@ -97,7 +98,8 @@ int run(const RunOptions& options) {
   if (model.analysis.type == "modes")
     return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
   const std::optional<Model> original = options.certify ? std::optional(model) : std::nullopt;
-  Simulation simulation = make_simulation(options, std::move(model));
+  std::string note;
+  Simulation simulation = make_simulation(options, std::move(model), note);
   const std::string folder = results_folder(options);
   const std::string checkpoint = folder + "/" + kCheckpointName;
   io::Recorder recorder(simulation, folder, provenance_of(options.model, simulation.summary()),
@@ -105,6 +107,7 @@ int run(const RunOptions& options) {
   if (!options.quiet) narrate_start(simulation, folder);
 
   const auto save = [&] {
+    recorder.sync();
     io::write_checkpoint(checkpoint, simulation.model(), simulation.system(), simulation.state());
   };
   catch_stop_signals();
@@ -113,7 +116,7 @@ int run(const RunOptions& options) {
   double next_save = every > 0.0 ? wall_clock() + every : 0.0;
   Progress progress(!options.quiet, simulation.model().analysis.duration);
   recorder.step(simulation);
-  const RunSummary summary =
+  RunSummary summary =
       simulation.run([&](Simulation& s) { recorder.frame(s); },
                      [&](Simulation& s) {
                        recorder.step(s);
@@ -131,12 +134,13 @@ int run(const RunOptions& options) {
                      },
                      &stop_wanted);
   progress.clear();
+  if (!note.empty()) summary.warnings.push_back(note);
 
   // The last state is part of the results of a finished or failed run.
   if (summary.end == RunEnd::finished || summary.end == RunEnd::not_converged)
     recorder.frame(simulation);
-  recorder.close();
   save();
+  recorder.close();
 
   int code = exit_code(summary, limit_reached);
   if (!summary.message.empty() && (code == kNotConverged || code == 0)) say(summary.message);

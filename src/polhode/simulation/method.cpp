@@ -164,6 +164,11 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
 
 }  // namespace
 
+int method_order(const System& system, const AnalysisSpec& analysis) {
+  std::string reasons;
+  return choose_order(system, analysis, reasons);
+}
+
 Method choose_method(const System& system, const AnalysisSpec& a) {
   Method m;
   m.ga = GeneralizedAlpha::from_spectral_radius(a.rho_inf);

@@ -25,4 +25,7 @@ struct Method {
 /// unknown solver.
 [[nodiscard]] Method choose_method(const System& system, const AnalysisSpec& analysis);
 
+/// Order of accuracy of that method. @throws InputError likewise
+[[nodiscard]] int method_order(const System& system, const AnalysisSpec& analysis);
+
 }  // namespace polhode

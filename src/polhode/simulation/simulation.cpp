@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <polhode/core/clock.hpp>
+#include <polhode/simulation/finite_functions.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
 #include <polhode/system/state_archive.hpp>
 
@@ -13,6 +14,19 @@ namespace {
 /// Difference of times, as a part of the output interval, below which they are equal.
 constexpr double kSameTime = 1e-9;
 constexpr const char* kSeeAtStart = "Use a channel that is available at the start";
+
+/// Names the function of time that makes a step fail, if one does.
+void explain(const Model& model, const State& state, bool statics, StepReport& report) {
+  if (report.accepted) return;
+  // From the last step on, which may have ended where a function is not finite: forces are taken
+  // within steps.
+  const double from = std::max(0.0, state.t - state.dt_last);
+  const double rest = (statics ? 1.0 : model.analysis.duration) - state.t;
+  const double step = state.dt_last > 0.0 ? state.dt_last : rest;
+  const double to = state.t + (statics ? rest : model.analysis.step.value_or(step));
+  const std::string cause = not_finite_in(model, from, to);
+  if (!cause.empty()) report.message = cause;
+}
 
 }  // namespace
 
@@ -53,6 +67,7 @@ StepReport Simulation::step(double t_limit) {
         "Give a later time; the end of the analysis may have been reached");
   const double wall = wall_clock(), cpu = cpu_clock();
   StepReport report = advance(t_limit);
+  explain(impl_->model, impl_->state, impl_->statics != nullptr, report);
   impl_->figures.wall_time_s += wall_clock() - wall;
   impl_->figures.cpu_time_s += cpu_clock() - cpu;
   return report;
@@ -85,20 +100,21 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       s.figures.end = RunEnd::interrupted;
       break;
     }
-    const StepReport report = advance(automatic ? std::min(next, end) : end);
+    StepReport report = advance(automatic ? std::min(next, end) : end);
     if (!report.accepted) {
+      explain(s.model, s.state, s.statics != nullptr, report);
       s.figures.end = RunEnd::not_converged;
       s.figures.message = report.message;
       s.watch_stretches();
       watch_stress();
       break;
     }
-    if (on_step) on_step(*this);
     const bool finished = s.state.t >= end * (1.0 - kSameTime) || s.stopped();
     if (!every || finished || s.state.t >= next * (1.0 - kSameTime)) {
       look();
       next = output_after(s.state.t);
     }
+    if (on_step) on_step(*this);  // After the output: a checkpoint of this state has it behind it.
   }
   if (s.stopped() && s.figures.end == RunEnd::finished) {
     const EventSpec& event = s.map.events[static_cast<std::size_t>(s.events->stopped(s.state))];

@@ -138,8 +138,8 @@ class Simulation {
   /// leads to the next equilibrium. @throws InputError unless t_limit is after time().
   StepReport step(double t_limit);
   /// Steps to the model's duration, or to the full load; calls observe(*this) at the start and
-  /// after every step whose end is an output time (model.output.every), and on_step after every
-  /// step. Stops early, after the current step, when *stop becomes true.
+  /// after every step whose end is an output time (model.output.every), and then on_step after
+  /// every step. Stops early, after the current step, when *stop becomes true.
   RunSummary run(const std::function<void(Simulation&)>& observe = {},
                  const std::function<void(Simulation&)>& on_step = {},
                  const std::atomic<bool>* stop = nullptr);

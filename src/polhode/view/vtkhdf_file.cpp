@@ -2,7 +2,6 @@
 #include <polhode/view/vtkhdf_file.hpp>
 
 #include <array>
-#include <filesystem>
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
@@ -11,7 +10,6 @@ namespace polhode {
 
 namespace {
 
-namespace fs = std::filesystem;
 using io::hdf5::Id;
 
 void check_written(bool good, const std::string& path) {
@@ -96,8 +94,9 @@ std::string block_name(const std::string& name) {
 }  // namespace
 
 VtkHdfFile::VtkHdfFile(std::string path, std::vector<double> times)
-    : path_(std::move(path)), unfinished_(path_ + ".unfinished"), times_(std::move(times)) {
-  file_ = Id(H5Fcreate(unfinished_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    : path_(std::move(path)), unfinished_(path_), times_(std::move(times)) {
+  file_ =
+      Id(H5Fcreate(unfinished_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   check_written(file_.valid(), path_);
   root_ = new_group(file_.get(), "VTKHDF", true);
   describe(root_.get(), "PartitionedDataSetCollection");
@@ -106,8 +105,6 @@ VtkHdfFile::VtkHdfFile(std::string path, std::vector<double> times)
 
 VtkHdfFile::~VtkHdfFile() {
   for (Id* id : {&assembly_, &root_, &file_}) id->close();
-  std::error_code ignored;
-  if (!unfinished_.empty()) fs::remove(unfinished_, ignored);
 }
 
 void VtkHdfFile::add_fields(hid_t grid, hid_t steps, const char* group,
@@ -168,10 +165,7 @@ void VtkHdfFile::close() {
   good = root_.close() >= 0 && good;
   good = file_.close() >= 0 && good;
   check_written(good, path_);
-  std::error_code fault;
-  fs::rename(unfinished_, path_, fault);
-  check_written(!fault, path_);
-  unfinished_.clear();
+  unfinished_.keep(false);
 }
 
 }  // namespace polhode

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <polhode/io/results/hdf5_id.hpp>
+#include <polhode/io/text/output_file.hpp>
 
 namespace polhode {
 
@@ -54,7 +55,8 @@ class VtkHdfFile {
   void add_fields(hid_t grid, hid_t steps, const char* group,
                   const std::vector<VtkHdfField>& fields, std::size_t entries);
 
-  std::string path_, unfinished_;
+  std::string path_;
+  io::UnfinishedFile unfinished_;
   std::vector<double> times_;
   io::hdf5::Id file_, root_, assembly_;
   std::set<std::string> names_;

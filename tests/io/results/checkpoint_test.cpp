@@ -9,6 +9,7 @@
 #include <polhode/compile/build_system.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/kernels/dispatch.hpp>
 #include <polhode/system/state_archive.hpp>
 #include <support/scratch.hpp>
 
@@ -121,6 +122,33 @@ TEST(Checkpoint, RefusesAnotherModel) {
   }
 }
 
+TEST(Checkpoint, RefusesAnotherOrder) {
+  const Saved s;
+  Model finer = s.model;
+  finer.analysis.order = 4;
+  finer.analysis.step = 0.01;
+  try {
+    (void)io::read_checkpoint(s.path, finer, s.system);
+    FAIL() << "read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("was written by a run of order 2, but this one has order "
+                                        "4. Give --set analysis.order=2."));
+  }
+}
+
+TEST(Checkpoint, TellsOfAnotherInstructionSet) {
+  Saved s;
+  std::string note;
+  (void)io::read_checkpoint(s.path, s.model, s.system, &note);
+  EXPECT_EQ(note, "");
+  Model other = s.model;
+  other.analysis.isa = "baseline";
+  io::write_checkpoint(s.path, other, s.system, s.state);
+  (void)io::read_checkpoint(s.path, s.model, s.system, &note);
+  if (available_instruction_sets().size() < 2) GTEST_SKIP() << "there is no other set";
+  EXPECT_THAT(note, HasSubstr("was begun with the instruction set baseline and continues with"));
+}
+
 // A checkpoint with a changed bit, in every 97th byte, or cut, at every 211th byte, is refused with
 // a message.
 TEST(Checkpoint, RefusesADamagedFile) {
@@ -158,7 +186,7 @@ TEST(Checkpoint, ReportsAMissingFile) {
 TEST(Checkpoint, ReplacesAnOldOneAtomically) {
   const Saved s;
   io::write_checkpoint(s.path, s.model, s.system, s.state);
-  EXPECT_FALSE(std::filesystem::exists(s.path + ".tmp"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(s.scratch / ""), {}), 1);
   EXPECT_NO_THROW((void)io::read_checkpoint(s.path, s.model, s.system));
 }
 

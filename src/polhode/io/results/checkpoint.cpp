@@ -9,17 +9,26 @@
 #include <polhode/core/sha256.hpp>
 #include <polhode/io/results/model_fingerprint.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/kernels/dispatch.hpp>
+#include <polhode/simulation/method.hpp>
 #include <polhode/system/state_archive.hpp>
 
 namespace polhode::io {
 
 namespace {
 
-// Layout: magic (16 bytes with the format version), fingerprint (64), length of the state (8,
-// little endian), state, SHA-256 of all that (64).
+// Layout: magic (16 bytes with the format version), fingerprint (64), order and instruction set
+// (16, padded with blanks), length of the state (8, little endian), state, SHA-256 of all that
+// (64).
 constexpr std::string_view kMagicStem = "polhode state ";
-constexpr std::string_view kMagic = "polhode state 6\n";
-constexpr std::size_t kDigest = 64;
+constexpr std::string_view kMagic = "polhode state 7\n";
+constexpr std::size_t kDigest = 64, kMethod = 16;
+
+/// Order and instruction set of a run: "2 avx512".
+std::string method_text(const System& system, const AnalysisSpec& analysis) {
+  const int order = method_order(system, analysis);
+  return format("{:<16}", format("{} {}", order, lane_kernels(analysis.isa).name));
+}
 
 }  // namespace
 
@@ -29,13 +38,15 @@ void write_checkpoint(const std::string& path, const Model& model, const System&
   const std::uint64_t length = body.size();
   std::string bytes(kMagic);
   bytes += model_fingerprint(model);
+  bytes += method_text(system, model.analysis);
   bytes.append(reinterpret_cast<const char*>(&length), sizeof length);
   bytes += body;
   bytes += sha256_hex(bytes);
   write_file_atomically(path, bytes);
 }
 
-State read_checkpoint(const std::string& path, const Model& model, const System& system) {
+State read_checkpoint(const std::string& path, const Model& model, const System& system,
+                      std::string* note) {
   const std::string file = read_file(path);
   const std::string_view bytes = file;
   constexpr const char* kOther = "Give the checkpoint that the run wrote, usually checkpoint.pst";
@@ -44,7 +55,7 @@ State read_checkpoint(const std::string& path, const Model& model, const System&
     throw InputError(path, "has a checkpoint format that this version does not read",
                      "Continue the run with the version that wrote it");
   std::uint64_t length = 0;
-  const std::size_t head = kMagic.size() + kDigest + sizeof length;
+  const std::size_t head = kMagic.size() + kDigest + kMethod + sizeof length;
   if (bytes.size() >= head)
     std::memcpy(&length, bytes.data() + head - sizeof length, sizeof length);
   if (bytes.size() < head + kDigest || bytes.size() - head - kDigest != length)
@@ -57,6 +68,23 @@ State read_checkpoint(const std::string& path, const Model& model, const System&
     throw InputError(path, "was written by a run of another model",
                      "Give the model and the --set values of that run; only analysis.duration, the "
                      "step and the output may differ");
+  const std::string_view before = bytes.substr(kMagic.size() + kDigest, kMethod);
+  const std::string now = method_text(system, model.analysis);
+  const auto order = [](std::string_view text) { return text.substr(0, text.find(' ')); };
+  const auto isa = [](std::string_view text) {
+    const std::size_t begin = text.find(' ') + 1;
+    return text.substr(begin, text.find(' ', begin) - begin);
+  };
+  if (order(before) != order(now))
+    throw InputError(path,
+                     format("was written by a run of order {}, but this one has order {}",
+                            order(before), order(now)),
+                     format("Give --set analysis.order={}", order(before)));
+  if (note != nullptr && isa(before) != isa(now))
+    *note = format(
+        "The run was begun with the instruction set {} and continues with {}: its last digits "
+        "differ from those of a run in one go. Give --isa {} where the machine has it.",
+        isa(before), isa(now), isa(before));
   return state_from_bytes(system, bytes.substr(head, length), path);
 }
 

@@ -104,6 +104,11 @@ void CsvTable::flush() {
   last_write_ = std::chrono::steady_clock::now();
 }
 
+void CsvTable::sync() {
+  flush();
+  if (::fsync(file_) != 0) throw FileError::from_errno(path_, "cannot be written to the disk");
+}
+
 CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
                      std::optional<double> keep) {
   const Model& model = simulation.model();
@@ -125,6 +130,10 @@ void CsvProbes::record(const Simulation& simulation) {
 
 void CsvProbes::flush() {
   for (Probe& probe : probes_) probe.table.flush();
+}
+
+void CsvProbes::sync() {
+  for (Probe& probe : probes_) probe.table.sync();
 }
 
 }  // namespace polhode::io

@@ -25,6 +25,7 @@ class CsvTable {
   /// Time of the last row; nothing if there is none.
   [[nodiscard]] std::optional<double> last_time() const { return last_time_; }
   void flush();  ///< @throws FileError
+  void sync();   ///< Waits until the disk has all rows. @throws FileError
 
  private:
   std::string path_, held_;
@@ -45,6 +46,7 @@ class CsvProbes {
   /// Records after every step, and once at the start. @throws FileError
   void record(const Simulation& simulation);
   void flush();
+  void sync();  ///< Waits until the disk has all rows. @throws FileError
   [[nodiscard]] bool empty() const { return probes_.empty(); }
 
  private:

@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <filesystem>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +17,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/io/text/output_file.hpp>
 
 namespace polhode::io {
 
@@ -82,6 +82,7 @@ std::size_t Channel::size() const {
 
 struct Hdf5File::Impl {
   std::string path;
+  std::unique_ptr<UnfinishedFile> unnamed;  ///< Until publish().
   std::vector<Channel> channels;
   Id file;
   std::vector<Id> datasets;
@@ -89,6 +90,7 @@ struct Hdf5File::Impl {
   std::vector<double> held;  ///< Buffered frames.
   std::size_t held_frames = 0, frame_size = 0;
   Clock::time_point last_write = Clock::now();
+  std::optional<double> last_time;
   bool failed = false;
 
   [[noreturn]] void fail(const char* what) {
@@ -214,7 +216,8 @@ struct Hdf5File::Impl {
   void announce_length() {
     hsize_t length = 0;
     if (H5Fget_filesize(file.get(), &length) < 0) return;
-    const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+    const std::string& name = unnamed ? unnamed->path() : path;
+    const int descriptor = ::open(name.c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) return;
     std::array<unsigned char, 9> head{};
     const bool readable = ::pread(descriptor, head.data(), head.size(), 0) == 9;
@@ -267,13 +270,12 @@ Hdf5File::Hdf5File(const std::string& path, std::vector<Channel> channels,
   const Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_istore_k(creation.get(), kIndexHalfSize);
   const Id access = access_properties();
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);  // Readers of the old file keep their copy.
-  m.file = Id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  m.unnamed = std::make_unique<UnfinishedFile>(path);
+  m.file = Id(H5Fcreate(m.unnamed->path().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()),
+              H5Fclose);
   if (!m.file.valid()) m.fail("cannot be written");
   for (const Channel& c : m.channels) m.create_channel(c);
   for (const ChannelView& v : views) m.create_view(v);
-  m.flush_file();
 }
 
 Hdf5File Hdf5File::append_to(const std::string& path, std::vector<Channel> channels, double t) {
@@ -302,8 +304,12 @@ Hdf5File Hdf5File::append_to(const std::string& path, std::vector<Channel> chann
       m.require(H5Dread(m.datasets[0].get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                         times.data()),
                 "cannot be read");
-      m.written = static_cast<hsize_t>(
-          std::upper_bound(times.begin(), times.end(), t * (1.0 + 1e-14)) - times.begin());
+      // Times that do not grow are of frames that a kill left incomplete.
+      for (const double time : times) {
+        if (time > t * (1.0 + 1e-14) || (m.last_time && time <= *m.last_time)) break;
+        m.last_time = time;
+        ++m.written;
+      }
     }
   }
   for (std::size_t i = 0; i < m.channels.size(); ++i) {
@@ -391,7 +397,9 @@ void Hdf5File::append(const std::vector<double>& frame) {
   Impl& m = *impl_;
   if (frame.size() != m.frame_size)
     throw std::logic_error("Hdf5File::append: a frame of another size");
+  publish();
   m.held.insert(m.held.end(), frame.begin(), frame.end());
+  m.last_time = frame.front();
   ++m.held_frames;
   const std::chrono::duration<double> waited = Clock::now() - m.last_write;
   if (m.written == 0 || waited.count() > kHold || 8 * m.held.size() > kHoldBytes) m.write_held();
@@ -399,14 +407,30 @@ void Hdf5File::append(const std::vector<double>& frame) {
 
 std::size_t Hdf5File::frames() const { return impl_->written + impl_->held_frames; }
 
+std::optional<double> Hdf5File::last_time() const { return impl_->last_time; }
+
 void Hdf5File::flush() {
+  publish();
   impl_->write_held();
   impl_->flush_file();
+}
+
+void Hdf5File::sync() {
+  flush();
+  wait_for_disk(impl_->path);
+}
+
+void Hdf5File::publish() {
+  if (!impl_->unnamed) return;
+  impl_->flush_file();
+  impl_->unnamed->keep(false);
+  impl_->unnamed.reset();
 }
 
 void Hdf5File::close() {
   Impl& m = *impl_;
   if (!m.file.valid()) return;
+  publish();
   m.write_held();
   m.datasets.clear();
   m.require(m.file.close(), "cannot be closed");

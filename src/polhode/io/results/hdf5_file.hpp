@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,16 @@ class Hdf5File {
   /// Adds a frame: the numbers of all channels in order. @throws FileError
   void append(const std::vector<double>& frame);
   [[nodiscard]] std::size_t frames() const;
+  /// Time of the last frame; nothing if there is none.
+  [[nodiscard]] std::optional<double> last_time() const;
   /// Writes buffered frames. @throws FileError
   void flush();
+  /// Waits until the disk has all frames. @throws FileError
+  void sync();
+  /// Gives a new file, whose fixed data are complete, its name. Until then it is beside it under a
+  /// temporary one, so that readers find either no file or one that they can open. @throws
+  /// FileError
+  void publish();
   void close();
 
  private:

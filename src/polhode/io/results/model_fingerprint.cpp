@@ -77,7 +77,8 @@ class Fingerprint {
   void one(const TimeFunctionPtr& f) {
     one(f != nullptr);
     if (!f) return;
-    if (f->controller() >= 0) add(f->controller());
+    // The value of a controller's output is part of the state, not of the model.
+    if (f->controller() >= 0) return one(f->controller());
     one((*f)(0.0));
     double t = kFirstTime;
     for (int k = 0; k < kTimes; ++k, t *= kGrowth) one((*f)(t));

@@ -47,6 +47,8 @@ class ParaviewWriter {
   /// @param motions  Of every picture's body. @throws FileError
   void append(double t, const std::vector<BodyMotion>& motions);
   [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  [[nodiscard]] std::optional<double> last_time() const { return series_.last_time(); }
+  void sync() { series_.sync(); }    ///< @throws FileError
   void close() { series_.close(); }  ///< @throws FileError
 
  private:
@@ -76,6 +78,7 @@ class SolidsWriter {
   /// @param reports  Of every solid. @throws FileError
   void append(double t, const std::vector<SolidReport>& reports);
   [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void sync() { series_.sync(); }    ///< @throws FileError
   void close() { series_.close(); }  ///< @throws FileError
 
  private:
@@ -101,6 +104,7 @@ class LinesWriter {
   void append(double t, const std::vector<BeamReport>& beams,
               const std::vector<CableReport>& cables);
   [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void sync() { series_.sync(); }    ///< @throws FileError
   void close() { series_.close(); }  ///< @throws FileError
 
  private:
@@ -124,6 +128,7 @@ class ContactsWriter {
         body_of_shape_(std::move(body_of_shape)) {}
 
   void append(double t, const std::vector<contact::TouchingPoint>& points);  ///< @throws FileError
+  void sync() { series_.sync(); }                                            ///< @throws FileError
   void close() { series_.close(); }                                          ///< @throws FileError
 
  private:

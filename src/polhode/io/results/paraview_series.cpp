@@ -11,6 +11,7 @@
 #include <polhode/core/xml_text.hpp>
 #include <polhode/io/results/earlier_results.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/io/text/output_file.hpp>
 
 namespace polhode::io {
 
@@ -41,7 +42,8 @@ ParaviewSeries::ParaviewSeries(std::string folder, std::string name, std::string
   make_folder(folder_ + "/" + name_);
   if (keep) times_ = listed_times(format("{}/{}.pvd", folder_, name_), *keep);
   remove_numbered_files(folder_ + "/" + name_, extension_, times_.size());
-  write_list();
+  synced_ = times_.size();
+  write_list(false);
 }
 
 std::string ParaviewSeries::file(std::size_t frame) const {
@@ -58,10 +60,18 @@ void ParaviewSeries::append(double t, const std::string& bytes) {
   stream.close();
   if (!stream) throw FileError::from_errno(path, "cannot be written");
   times_.push_back(t);
-  if (wall_clock() >= next_listing_) write_list();
+  if (wall_clock() >= next_listing_) write_list(false);
 }
 
-void ParaviewSeries::write_list() {
+void ParaviewSeries::sync() {
+  // Two passes: the disk then writes all of them at once.
+  for (std::size_t i = synced_; i < times_.size(); ++i) start_writing(folder_ + "/" + file(i));
+  for (; synced_ < times_.size(); ++synced_) wait_for_disk(folder_ + "/" + file(synced_));
+  wait_for_disk(folder_ + "/" + name_);
+  write_list(true);
+}
+
+void ParaviewSeries::write_list(bool durable) {
   std::string text = R"(<?xml version="1.0"?>
 <VTKFile type="Collection" version="1.0" byte_order="LittleEndian">
 <Collection>
@@ -70,7 +80,7 @@ void ParaviewSeries::write_list() {
     text += format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times_[i], file(i));
   text += "</Collection>\n</VTKFile>\n";
   const double begin = wall_clock();
-  write_file_atomically(format("{}/{}.pvd", folder_, name_), text, false);
+  write_file_atomically(format("{}/{}.pvd", folder_, name_), text, durable);
   // Long lists are written less often, so that they take a small part of the run.
   next_listing_ = wall_clock() + std::max(kListEvery, 20.0 * (wall_clock() - begin));
 }

@@ -24,14 +24,20 @@ class ParaviewSeries {
   /// Adds one complete file. @throws FileError
   void append(double t, const std::string& bytes);
   [[nodiscard]] std::size_t frames() const { return times_.size(); }
-  void close() { write_list(); }  ///< @throws FileError
+  /// Time of the last file; nothing if there is none.
+  [[nodiscard]] std::optional<double> last_time() const {
+    return times_.empty() ? std::nullopt : std::optional(times_.back());
+  }
+  void sync();  ///< Waits until the disk has all files and their list. @throws FileError
+  void close() { write_list(false); }  ///< @throws FileError
 
  private:
-  void write_list();
+  void write_list(bool durable);
   [[nodiscard]] std::string file(std::size_t frame) const;
 
   std::string folder_, name_, extension_;
   std::vector<double> times_;
+  std::size_t synced_ = 0;     ///< Files that the disk has.
   double next_listing_ = 0.0;  ///< Seconds of the steady clock.
 };
 

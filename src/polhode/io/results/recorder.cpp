@@ -11,9 +11,11 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/csv_probes.hpp>
 #include <polhode/io/results/earlier_results.hpp>
+#include <polhode/io/results/folder_lock.hpp>
 #include <polhode/io/results/paraview.hpp>
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/io/text/output_file.hpp>
 
 namespace polhode::io {
 
@@ -40,6 +42,7 @@ class SensorFile {
                       events[done_].began ? "began" : "ended");
     write_file_atomically(path_, text_, false);
   }
+  void sync() { write_file_atomically(path_, text_); }
 
  private:
   std::string path_, text_;
@@ -66,6 +69,11 @@ std::vector<contact::TouchingPoint> touching_points(const Simulation& simulation
   return points;
 }
 
+/// Removes what a killed run left half written.
+void remove_unfinished(const std::string& folder) {
+  for (const char* part : {"", "/probes", "/paraview"}) remove_unfinished_files(folder + part);
+}
+
 bool has_sensors(const Simulation& simulation) {
   const std::vector<ContactMap::Pair>& pairs = simulation.contact_map().pairs;
   return std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return !p.sensor.empty(); });
@@ -74,6 +82,7 @@ bool has_sensors(const Simulation& simulation) {
 }  // namespace
 
 struct Recorder::Impl {
+  std::optional<FolderLock> lock;  // Given back last.
   std::optional<ResultsFile> results;
   std::optional<ParaviewWriter> paraview;
   std::optional<SolidsWriter> solids;
@@ -91,7 +100,8 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
   const OutputSpec& output = simulation.model().output;
   const std::optional<double> keep =
       restarted ? std::optional<double>(simulation.time()) : std::nullopt;
-  make_folder(folder);
+  impl_->lock.emplace(folder, provenance.model_file);
+  remove_unfinished(folder);
   if (!restarted) clear_earlier_results(folder);
   if (output.hdf5) {
     const std::string path = folder + "/" + results::kFileName;
@@ -100,8 +110,6 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
       impl_->results.emplace(ResultsFile::append_to(path, layout, *keep));
     else
       impl_->results.emplace(path, layout, provenance);
-    // The start of a continued run was already recorded by the earlier run.
-    if (impl_->results->frames() > 0) impl_->last_frame = simulation.time();
   }
   if (output.paraview)
     impl_->paraview.emplace(folder + "/paraview", "results",
@@ -138,6 +146,13 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     impl_->contacts.emplace(folder + "/paraview", "contacts", std::move(names), std::move(side),
                             keep);
   }
+  // Frames of the earlier run are not written again.
+  std::optional<double> last;
+  if (impl_->results)
+    last = impl_->results->last_time();
+  else if (impl_->paraview)
+    last = impl_->paraview->last_time();
+  if (last) impl_->last_frame = *last;
   if (has_sensors(simulation)) impl_->sensors.emplace(folder + "/events.csv", keep);
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
 }
@@ -177,6 +192,16 @@ void Recorder::frame(const Simulation& simulation) {
 void Recorder::step(const Simulation& simulation) {
   if (impl_->probes) impl_->probes->record(simulation);
   if (impl_->sensors) impl_->sensors->record(simulation.sensor_events());
+}
+
+void Recorder::sync() {
+  if (impl_->results) impl_->results->sync();
+  if (impl_->paraview) impl_->paraview->sync();
+  if (impl_->solids) impl_->solids->sync();
+  if (impl_->lines) impl_->lines->sync();
+  if (impl_->contacts) impl_->contacts->sync();
+  if (impl_->sensors) impl_->sensors->sync();
+  if (impl_->probes) impl_->probes->sync();
 }
 
 void Recorder::close() {

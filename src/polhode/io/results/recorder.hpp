@@ -18,7 +18,7 @@ class Recorder {
   /// @param restarted  The simulation continues from its present time: files of the earlier run in
   /// the folder are kept up to that time and continued. Otherwise they are removed, see
   /// clear_earlier_results().
-  /// @throws FileError, InputError
+  /// @throws FileError; InputError if another run is writing into the folder, see FolderLock.
   Recorder(const Simulation& simulation, const std::string& folder, const Provenance& provenance,
            bool restarted = false);
   ~Recorder();
@@ -28,6 +28,9 @@ class Recorder {
   void frame(const Simulation& simulation);
   /// Writes probes. Called after every step. @throws FileError
   void step(const Simulation& simulation);
+  /// Waits until the disk has all that was recorded: before a checkpoint, which must not be newer
+  /// than the files that are continued from it. @throws FileError
+  void sync();
   /// Writes all buffered data and closes the files. @throws FileError
   void close();
 

@@ -175,9 +175,10 @@ ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<I
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   m.path = path;
   std::error_code error;
+  // First the promise: a run that goes on lengthens its file before it promises the length.
+  const std::uint64_t promised = promised_length(path);
   m.end = fs::file_size(path, error);
   if (error) throw FileError(path, "cannot be read", "Check the path and the permissions");
-  const std::uint64_t promised = promised_length(path);
   if (promised == 0) m.fail("is no HDF5 file");
   if (promised > m.end && promised < (std::uint64_t{1} << 46))
     m.copy = std::make_unique<FullLengthCopy>(path, promised);

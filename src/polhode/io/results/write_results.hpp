@@ -99,6 +99,9 @@ class ResultsFile {
 
   void append(const ResultsFrame& frame);  ///< @throws FileError
   [[nodiscard]] std::size_t frames() const { return file_.frames(); }
+  /// Time of the last frame; nothing if there is none.
+  [[nodiscard]] std::optional<double> last_time() const { return file_.last_time(); }
+  void sync() { file_.sync(); }    ///< Waits until the disk has all frames. @throws FileError
   void close() { file_.close(); }  ///< @throws FileError
 
  private:

@@ -19,7 +19,8 @@ class FileError : public std::runtime_error {
 [[nodiscard]] std::string read_file(const std::string& path);
 
 /// Writes a file atomically: at no moment, not even after a crash, is there a partial file of this
-/// name (temporary file, fsync, rename).
+/// name (temporary file, fsync, rename). Links are followed; devices and FIFOs are written to, not
+/// replaced. See UnfinishedFile.
 /// @param durable  Wait until the disk has it (fsync), so that it also survives a power cut; a
 /// killed program leaves complete files either way.
 /// @throws FileError
