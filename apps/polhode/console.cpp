@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "console.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,14 +13,46 @@
 #include <string_view>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/read/model_places.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 namespace polhode::cli {
 
+namespace {
+
+/// Positions in the model that was read last: a command reads one, then errors are about it.
+io::ModelPlaces& places_of_last() {
+  static io::ModelPlaces places;
+  return places;
+}
+
+}  // namespace
+
 Model load_model(const ModelArguments& arguments) {
   (void)io::read_file(arguments.file);  // A missing file is an error of input, not of the model.
-  return io::read_model(arguments.file, arguments.overrides);
+  Model model = io::read_model(arguments.file, arguments.overrides);
+  places_of_last() = io::ModelPlaces(model, arguments.overrides);
+  return model;
+}
+
+std::string located_text(const InputError& error) {
+  const std::optional<io::Diagnostic> found = places_of_last().located(error);
+  return found ? found->text() : error.what();
+}
+
+std::string located_text(const SolveError& error) {
+  const std::optional<io::Diagnostic> found = places_of_last().located(error);
+  return found ? found->text() : error.what();
+}
+
+void open_standard_files() {
+  for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number) {
+    if (::fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is this one. It is open for the wrong direction.
+    const int how = number == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+    if (::open("/dev/null", how) != number) std::abort();
+  }
 }
 
 void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }

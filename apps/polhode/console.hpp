@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <polhode/core/error.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -19,6 +20,14 @@ struct ModelArguments {
 
 /// Reads the model. @throws FileError if there is no such file; ModelErrors if it is wrong.
 [[nodiscard]] Model load_model(const ModelArguments& arguments);
+
+/// The message of an error that is found after reading, with its place in the model's file.
+[[nodiscard]] std::string located_text(const InputError& error);
+[[nodiscard]] std::string located_text(const SolveError& error);
+
+/// Opens those of the descriptors 0 to 2 that are closed, so that no file of a run gets the number,
+/// and with it the text, of the console. Reading and writing them stays an error.
+void open_standard_files();
 
 /// Prints a line on stderr.
 void say(const std::string& line);

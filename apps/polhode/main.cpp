@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <new>
 #include <string>
@@ -84,19 +85,22 @@ int main_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace polhode;
+  cli::open_standard_files();
+  // A file that reaches the limit of its length is an error of writing, with its message.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return cli::main_program(argc, argv);
   } catch (const io::ModelErrors& errors) {
     cli::say(errors.text());
     return cli::kModelInvalid;
   } catch (const InputError& error) {
-    cli::say(error.what());
+    cli::say(cli::located_text(error));
     return cli::kModelInvalid;
   } catch (const io::FileError& error) {
     cli::say(error.what());
     return cli::kInputOutput;
   } catch (const SolveError& error) {
-    cli::say(error.what());
+    cli::say(cli::located_text(error));
     return cli::kNotConverged;
   } catch (const std::bad_alloc&) {
     cli::say("polhode: the memory is exhausted. Run a smaller model, or on a larger machine.");

@@ -6,6 +6,8 @@
 
 #include <polhode/core/format.hpp>
 
+#include "console.hpp"
+
 namespace polhode::cli {
 
 WebAnswer ServedScene::answer(const std::string& path) {
@@ -51,6 +53,8 @@ void ServedScene::load() {
   try {
     scene_ = scene_of(request_);
     if (!request_.compared.empty()) compared_ = compared_scene_of(request_);
+  } catch (const InputError& error) {
+    error_ = located_text(error);
   } catch (const std::exception& error) {
     error_ = error.what();
   }

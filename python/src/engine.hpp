@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include <polhode/io/read/model_places.hpp>
 #include <polhode/io/results/write_results.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -16,15 +17,29 @@ namespace polhode::python {
 struct NestedUse : std::runtime_error {
   NestedUse()
       : std::runtime_error(
-            "A force cannot use its simulation during its evaluation. Store the values after each step, in a loop over the steps or in run(observe=...). A force may read only the time.") {}
+            "A force cannot use its simulation during its evaluation. Store the values after each "
+            "step, in a loop over the steps or in run(observe=...). A force may read only the "
+            "time.") {}
 };
+
+/// Makes something of a model; errors that are found there get their place in the model's file.
+template <class Make>
+auto located(const io::ModelPlaces& places, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    if (const auto found = places.located(error)) throw io::ModelErrors({*found});
+    throw;
+  }
+}
 
 /// A simulation with its names, for Python.
 class Engine {
  public:
   explicit Engine(const CompiledModel& compiled) : calls(compiled.calls) {
     const nb::gil_scoped_release unlocked;
-    simulation_ = std::make_unique<Simulation>(compiled.model);
+    simulation_ = located(io::ModelPlaces(compiled.model),
+                          [&] { return std::make_unique<Simulation>(compiled.model); });
   }
   Engine(const Model& model, State state, nb::object owner)
       : calls(std::move(owner)),
@@ -32,8 +47,8 @@ class Engine {
 
   /// Access that evaluates no forces.
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
-  /// A simulation in use by one call: steps and reports evaluate forces, so a force in Python that used a report would
-  /// be evaluated recursively.
+  /// A simulation in use by one call: steps and reports evaluate forces, so a force in Python that
+  /// used a report would be evaluated recursively.
   class Use {
    public:
     /// @throws NestedUse if it is in use already.
@@ -67,8 +82,8 @@ class Engine {
     const Use used(*this);
     return {model(), simulation_->state(), calls};
   }
-  /// Sets positions and velocities of moving bodies, by index, at the present time. Then joints are assembled,
-  /// velocities projected, and turn counts and the energy balance reset.
+  /// Sets positions and velocities of moving bodies, by index, at the present time. Then joints are
+  /// assembled, velocities projected, and turn counts and the energy balance reset.
   /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
   void set_motions(const std::map<int, BodyMotion>& motions);
 

@@ -43,7 +43,8 @@ nb::dict modes(const CompiledModel& compiled, std::optional<int> count,
   std::unique_ptr<ModalAnalysis> analysis;
   {
     const nb::gil_scoped_release unlocked;
-    analysis = std::make_unique<ModalAnalysis>(std::move(changed));
+    analysis = located(io::ModelPlaces(compiled.model),
+                       [&] { return std::make_unique<ModalAnalysis>(std::move(changed)); });
   }
   nb::list list;
   for (std::size_t i = 0; i < analysis->report().modes.size(); ++i)

@@ -91,8 +91,10 @@ analysis: {type: modes, count: 3}
   const auto result = run({"modes", "stiff.yaml"});
   EXPECT_EQ(result.code, 4);
   EXPECT_EQ(result.err,
-            "modes: a frequency is not a finite number. Look for a mass, inertia or stiffness that "
-            "is far too small or too large.\n");
+            "stiff.yaml:4:1: error: modes: a frequency is not a finite number. Look for a mass, "
+            "inertia or stiffness that is far too small or too large.\n"
+            "    4 | analysis: {type: modes, count: 3}\n"
+            "      | ^~~~~~~~\n");
 }
 
 TEST_F(CommandLine, PrintsAndWritesNaturalFrequencies) {
