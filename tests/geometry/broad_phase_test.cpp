@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <polhode/geometry/broad_phase.hpp>
 
 #include "support/random_steps.hpp"
@@ -68,6 +69,16 @@ TEST(BroadPhase, GivesTheSameOrderAgain) {
   one.find(boxes, first);
   other.find(boxes, second);
   EXPECT_EQ(first, second);
+}
+
+TEST(BroadPhase, LeavesOutBoxesThatAreNotFinite) {
+  std::vector<geometry::Bounds> boxes = boxes_in_a_cube(40, 1.0, 0.5, 4.0);
+  const Pairs wanted = by_trying_all(boxes);
+  for (const double lost : {std::nan(""), HUGE_VAL, -1e200, 1e308}) {
+    std::vector<geometry::Bounds> more = boxes;
+    more.push_back({Vec3(0.0, lost, 0.0), Vec3(1.0, std::abs(lost), 1.0)});
+    EXPECT_EQ(found(more), wanted) << lost;
+  }
 }
 
 }  // namespace

@@ -12,6 +12,13 @@ namespace {
 /// Largest number of grid cells per box: a scene with outliers gets larger cells.
 constexpr double kCellsPerBox = 4.0;
 
+/// Farthest coordinate of a box: differences of two and their products are finite [m].
+constexpr double kFarthest = 1e150;
+
+bool is_placed(const Bounds& box) {
+  return (box.low.array().abs() < kFarthest).all() && (box.high.array().abs() < kFarthest).all();
+}
+
 float rounded_down(double x) {
   const auto f = static_cast<float>(x);
   return static_cast<double>(f) <= x ? f
@@ -142,10 +149,12 @@ void BroadPhase::find(std::span<const Bounds> boxes, std::vector<std::pair<int, 
   pairs.clear();
   if (boxes.empty()) return;
   double least = std::numeric_limits<double>::infinity();
-  for (const Bounds& b : boxes) least = std::min(least, (b.high - b.low).maxCoeff());
+  for (const Bounds& b : boxes)
+    if (is_placed(b)) least = std::min(least, (b.high - b.low).maxCoeff());
   least = std::max(least, std::numeric_limits<double>::min());
   members_.clear();
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+    if (!is_placed(boxes[i])) continue;  // of a motion that is lost: no cell can be computed
     // The smallest size is in the middle of its class: similar sizes fall into one.
     const double ratio = (boxes[i].high - boxes[i].low).maxCoeff() / least;
     const auto c = static_cast<std::size_t>(std::clamp(std::log2(ratio) + 0.5, 0.0, 60.0));

@@ -22,7 +22,7 @@ struct Bounds {
 class BroadPhase {
  public:
   /// Finds pairs (i, j), i < j, of boxes that overlap or touch. Rounding may add pairs that are
-  /// apart by a ten-millionth of the scene.
+  /// apart by a ten-millionth of the scene. A box that is not finite meets none.
   void find(std::span<const Bounds> boxes, std::vector<std::pair<int, int>>& pairs);
 
  private:

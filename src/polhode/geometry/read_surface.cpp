@@ -2,19 +2,17 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/input_file.hpp>
 #include <polhode/geometry/read_surface.hpp>
 
 namespace polhode::geometry {
@@ -263,13 +261,9 @@ TriangleSurface read_surface(const std::string& path) {
   std::error_code no_matter;
   if (std::filesystem::is_directory(path, no_matter))
     throw InputError(path, "a directory is not a surface", "Name a .stl or .obj file in it");
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw InputError(path, format("the file cannot be opened ({})", std::strerror(errno)),
-                     "Check its name; names in a model are relative to the model file's folder");
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad())
-    throw InputError(path, "the file cannot be read to its end", "Check that it is a plain file");
+  std::string bytes;
+  if (const auto fault = read_input(path, bytes))
+    throw InputError(path, "the file " + fault->what, fault->hint);
   return parse_surface(path, bytes);
 }
 

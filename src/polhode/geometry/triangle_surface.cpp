@@ -6,6 +6,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/geometry/shells.hpp>
 #include <polhode/geometry/triangle_surface.hpp>
 
 namespace polhode::geometry {
@@ -107,6 +108,13 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
   if (std::abs(signed_volume(surface)) <= 1e-12 * std::pow(area, 1.5))
     throw InputError(where, format("the surface encloses no volume (its area is {:.6g} m²)", area),
                      hint);
+  if (const auto corner = misplaced_shell(surface))
+    throw InputError(
+        where,
+        format("the surface has a shell at {} that lies inside another one and faces the same "
+               "way, so its volume would count twice",
+               point_text(*corner)),
+        "Remove it, or turn its triangles over if it is a cavity");
 }
 
 double signed_volume(const TriangleSurface& surface) {

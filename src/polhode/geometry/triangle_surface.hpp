@@ -30,7 +30,8 @@ struct EdgeReport {
 /// Counts the edges at which the surface is not closed or not consistently oriented.
 [[nodiscard]] EdgeReport edge_report(const TriangleSurface& surface);
 
-/// Rejects a surface without triangles, one that is not closed, and one that encloses no volume.
+/// Rejects a surface without triangles, one that is not closed, one that encloses no volume, and a
+/// shell within another that faces the same way.
 /// @param where  File or path in the user's model, first part of the message.
 /// @throws InputError that counts the invalid edges and says where the first one is.
 void check_closed(std::string_view where, const TriangleSurface& surface);

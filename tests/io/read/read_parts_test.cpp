@@ -246,5 +246,61 @@ TEST_F(ReadParts, UsesContactMaterialsOfTheWholeModel) {
             "ball.yaml:6:25: error: bodies.p_ball.");
 }
 
+std::string refusal(const std::string& file) {
+  try {
+    (void)io::read_model(file);
+  } catch (const io::ModelErrors& errors) {
+    return errors.diagnostics().front().what;
+  }
+  return "";
+}
+
+// Parts that contain ten parts each, six deep, are a million; the files have 350 bytes.
+TEST(Parts, MultiplyUpToABound) {
+  const test::Scratch scratch;
+  for (int i = 0; i < 12; ++i) {
+    std::string text = "format: 1\nparts:\n";
+    for (int k = 0; k < 10; ++k)
+      text += "  p" + std::to_string(k) + ": {file: f" + std::to_string(i + 1) + ".yaml}\n";
+    write(scratch / ("f" + std::to_string(i) + ".yaml"), text);
+  }
+  write(scratch / "f12.yaml", "format: 1\nbodies: {a: {mass: 1, inertia: [1, 1, 1]}}\n");
+  EXPECT_EQ(refusal(scratch / "f0.yaml"), "the model has more than 100000 parts");
+}
+
+TEST(Parts, HaveABoundOfBytesAndOfDepth) {
+  const test::Scratch scratch;
+  std::string large = "format: 1\nbodies: {a: {mass: 1, inertia: [1, 1, 1]}}\n#";
+  large.resize(600'000, ' ');
+  write(scratch / "large.yaml", large);
+  std::string many = "format: 1\nparts:\n";
+  for (int k = 0; k < 1000; ++k) many += "  p" + std::to_string(k) + ": {file: large.yaml}\n";
+  write(scratch / "many.yaml", many);
+  EXPECT_EQ(refusal(scratch / "many.yaml"), "the parts have more than 536870912 bytes");
+  for (int i = 0; i < 70; ++i)
+    write(scratch / ("d" + std::to_string(i) + ".yaml"),
+          "format: 1\nparts: {p: {file: d" + std::to_string(i + 1) + ".yaml, prefix: ''}}\n");
+  EXPECT_EQ(refusal(scratch / "d0.yaml"), "parts are nested more than 64 deep");
+}
+
+TEST(Parts, HaveNamesThatFilesCanHave) {
+  const test::Scratch scratch;
+  const std::string name(3000, 'n');
+  write(scratch / "m.yaml", "format: 1\nparts: {p: {file: " + name + ".yaml}}\n");
+  EXPECT_NE(refusal(scratch / "m.yaml").find("cannot be opened (File name too long)"),
+            std::string::npos);
+  write(scratch / "m.yaml",
+        "format: 1\nbodies: {" + name.substr(0, 300) + ": {mass: 1, inertia: [1, 1, 1]}}\n");
+  EXPECT_NE(refusal(scratch / "m.yaml").find("has 300 characters, more than 200"),
+            std::string::npos);
+  const std::string part =
+      "{model: {format: 1, bodies: {b: {mass: 1, inertia: [1, 1, 1]}}}, prefix: ";
+  write(scratch / "m.yaml", "format: 1\nparts: {p: " + part + std::string(199, 'q') + "}}\n");
+  EXPECT_EQ(refusal(scratch / "m.yaml"), "");
+  write(scratch / "m.yaml", "format: 1\nparts: {p: " + part + std::string(200, 'q') + "}}\n");
+  EXPECT_NE(refusal(scratch / "m.yaml").find("would have 201 characters, more than 200"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace polhode::read_parts_tests

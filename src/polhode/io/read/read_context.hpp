@@ -23,6 +23,16 @@ struct PartSource {
   const SourceNode* root = nullptr;
 };
 
+/// Longest name [characters]: file systems allow 255 with the endings of files.
+inline constexpr std::size_t kLongestName = 200;
+
+/// Files and numbers of the parts of a model, shared by all its readers: parts within parts
+/// multiply.
+struct PartsRead {
+  std::size_t count = 0, bytes = 0;  ///< Parts, and bytes of their files each time they are used.
+  std::map<std::string, std::shared_ptr<const SourceTree>> trees{};  ///< By full path.
+};
+
 /// Shared data of the readers of the parts of one model.
 struct ReadContext {
   const SourceTree& tree;
@@ -42,9 +52,9 @@ struct ReadContext {
   std::string source_file{};          ///< Model file, as shown in messages.
   Variables given_variables{};        ///< Of a part: set by the whole.
   std::vector<PartSource> parts{};    ///< Including nested parts.
-  std::vector<std::shared_ptr<const SourceTree>> owned_trees{};  ///< Of the parts' files.
   /// The file and those containing it as a part, full paths.
   std::vector<std::string> files_above{};
+  std::shared_ptr<PartsRead> parts_read = std::make_shared<PartsRead>();
 
   /// Adds an error of a value.
   void fault(const SourceNode& node, const std::string& path, std::string what, std::string hint);
@@ -114,6 +124,8 @@ std::optional<std::vector<int>> read_indices(ReadContext& context, const SourceN
 std::optional<std::vector<solids::Selection>> read_selections(ReadContext& context,
                                                               const SourceNode& node,
                                                               const std::string& path);
+/// Path from the root, links followed as far as there are files.
+std::string full_path(const std::string& file);
 /// Path of an existing file, relative to the model file's folder.
 std::optional<std::string> read_file_name(ReadContext& context, const SourceNode& node,
                                           const std::string& path);

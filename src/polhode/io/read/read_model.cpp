@@ -225,7 +225,7 @@ Model read_model_text(std::string text, const std::string& filename, const Overr
   context.folder = std::filesystem::path(filename).parent_path().string();
   context.model.source_file = filename;
   context.source_file = filename;
-  context.files_above = {std::filesystem::weakly_canonical(filename).string()};
+  context.files_above = {full_path(filename)};
   read_root(context, tree.root());
   diagnostics.throw_if_any();
   return std::move(context.model);

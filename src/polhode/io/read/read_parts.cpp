@@ -12,6 +12,11 @@ namespace polhode::io {
 
 namespace {
 
+/// Bounds of a model made of parts, which multiply when they contain each other: numbers far beyond
+/// what a file of a person has, reached in seconds.
+constexpr std::size_t kMostParts = 100'000;
+constexpr std::size_t kDeepestPart = 64;
+
 /// Reader of one part, which is added to the model; errors go to the context.
 class PartReader {
  public:
@@ -23,7 +28,7 @@ class PartReader {
         section_(context, node, place, "parts." + name, part_fields()) {}
 
   void read() {
-    if (!node_.is_map() || section_.has_unknown_key()) return;
+    if (!node_.is_map() || section_.has_unknown_key() || !has_room()) return;
     if (section_.refuse_both("file", "model", "Give one of them.")) return;
     if (section_.has("model")) {
       read_from(context_.tree, *section_.find("model"), context_.source_file, context_.folder);
@@ -41,7 +46,7 @@ class PartReader {
     const auto text = section_.text("file");
     if (!text) return nullptr;
     file_ = (std::filesystem::path(context_.folder) / *text).lexically_normal().string();
-    const std::string real = std::filesystem::weakly_canonical(file_).string();
+    const std::string real = full_path(file_);
     const auto& above = context_.files_above;
     if (std::find(above.begin(), above.end(), real) != above.end()) {
       section_.fault("file", format("'{}' is part of itself", *text),
@@ -50,17 +55,38 @@ class PartReader {
     }
     files_above_ = above;
     files_above_.push_back(real);
+    std::shared_ptr<const SourceTree>& tree = context_.parts_read->trees[real];
     try {
-      context_.owned_trees.push_back(
-          std::make_shared<SourceTree>(SourceTree::parse(read_file(file_), file_)));
-      context_.diagnostics.know(context_.owned_trees.back()->shared_source());
-      return context_.owned_trees.back().get();
+      if (!tree) {
+        tree = std::make_shared<SourceTree>(SourceTree::parse(read_file(file_), file_));
+        context_.diagnostics.know(tree->shared_source());
+      }
+      PartsRead& all = *context_.parts_read;
+      all.bytes += tree->source().text().size();
+      if (all.bytes <= SourceLimits{}.bytes) return tree.get();
+      section_.fault("file", format("the parts have more than {} bytes", SourceLimits{}.bytes),
+                     "Parts within parts multiply; build a model of this size in code.");
     } catch (const FileError& error) {
       section_.fault("file", error.what(), "Paths are relative to the folder of this file.");
     } catch (const ModelErrors& errors) {
       context_.diagnostics.take(errors.diagnostics());
     }
     return nullptr;
+  }
+
+  /// Whether the model still has room for a part; adds an error, once, if not.
+  bool has_room() {
+    PartsRead& all = *context_.parts_read;
+    if (all.count > kMostParts || all.bytes > SourceLimits{}.bytes) return false;
+    ++all.count;
+    const bool too_deep = context_.files_above.size() > kDeepestPart;
+    if (too_deep)
+      section_.fault("", format("parts are nested more than {} deep", kDeepestPart),
+                     "Leave out the part that leads here.");
+    else if (all.count > kMostParts)
+      section_.fault("", format("the model has more than {} parts", kMostParts),
+                     "Parts within parts multiply; build a model of this size in code.");
+    return !too_deep && all.count <= kMostParts;
   }
 
   void read_from(const SourceTree& tree, const SourceNode& root, const std::string& file,
@@ -70,6 +96,7 @@ class PartReader {
     part.folder = folder;
     part.source_file = file;
     part.files_above = files_above_.empty() ? context_.files_above : files_above_;
+    part.parts_read = context_.parts_read;
     read_given(part);
     read_things(part, root, &tree == &context_.tree ? section_.path() + ".model" : "");
     check_given(part, root);
@@ -150,7 +177,6 @@ class PartReader {
     context_.parts.push_back({prefix, &part.tree, &root});
     for (PartSource& inner : part.parts)
       context_.parts.push_back({prefix + inner.prefix, inner.tree, inner.root});
-    for (auto& tree : part.owned_trees) context_.owned_trees.push_back(std::move(tree));
   }
 
   /// Checks for names of the part that are already used; false after an error.
@@ -163,6 +189,13 @@ class PartReader {
     }
     const auto free = [&](const auto& whole, const auto& names) {
       for (const auto& [name, index] : names) {
+        if (prefix.size() + name.size() > kLongestName) {
+          section_.fault(section_.has("prefix") ? "prefix" : "",
+                         format("the name {} would have {} characters, more than {}",
+                                quote(prefix + name), prefix.size() + name.size(), kLongestName),
+                         "Choose a shorter prefix; results have files of this name.");
+          return false;
+        }
         if (whole.find(prefix + name) == whole.end() && prefix + name != "ground") continue;
         section_.fault(section_.has("prefix") ? "prefix" : "",
                        format("the name '{}' is taken", prefix + name), "Choose another prefix.");
@@ -184,6 +217,12 @@ class PartReader {
 };
 
 }  // namespace
+
+std::string full_path(const std::string& file) {
+  std::error_code fault;  // Names may be longer than the file system allows.
+  const std::filesystem::path path = std::filesystem::weakly_canonical(file, fault);
+  return fault ? std::filesystem::path(file).lexically_normal().string() : path.string();
+}
 
 void read_parts(ReadContext& context, const SourceNode& node) {
   for (std::size_t k = 0; k < node.keys.size(); ++k) {

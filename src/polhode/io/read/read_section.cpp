@@ -22,7 +22,12 @@ bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNo
   if (!sound)
     context.diagnostics.add(place, collection, quote(key.name) + " is not allowed as a name",
                             "Use letters, digits, '_' and '-'.");
-  return sound;
+  else if (key.name.size() > kLongestName)
+    context.diagnostics.add(place, collection,
+                            format("the name {} has {} characters, more than {}", quote(key.name),
+                                   key.name.size(), kLongestName),
+                            "Choose a shorter one; results have files of this name.");
+  return sound && key.name.size() <= kLongestName;
 }
 
 const FieldTable* read_kind(ReadContext& context, const SourceNode& node,

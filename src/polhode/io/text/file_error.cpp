@@ -4,10 +4,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/input_file.hpp>
 
 namespace polhode::io {
 
@@ -24,15 +23,9 @@ FileError FileError::from_errno(std::string_view file, std::string_view what) {
 }
 
 std::string read_file(const std::string& path) {
-  if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
-    throw FileError(path, "is a folder", "Name a file");
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw FileError::from_errno(path, "cannot be opened");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad()) throw FileError::from_errno(path, "cannot be read");
-  return std::move(text).str();
+  std::string bytes;
+  if (const auto fault = read_input(path, bytes)) throw FileError(path, fault->what, fault->hint);
+  return bytes;
 }
 
 void make_folder(const std::string& path) {

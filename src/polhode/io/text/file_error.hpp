@@ -15,7 +15,7 @@ class FileError : public std::runtime_error {
   [[nodiscard]] static FileError from_errno(std::string_view file, std::string_view what);
 };
 
-/// The bytes of a file. @throws FileError
+/// The bytes of a file. @throws FileError, also for pipes and devices, which need not end.
 [[nodiscard]] std::string read_file(const std::string& path);
 
 /// Writes a file atomically: at no moment, not even after a crash, is there a partial file of this

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/text/surrogate_pairs.hpp>
 
 namespace polhode::io {
 namespace {
@@ -170,6 +171,48 @@ class TreeBuilder : public YAML::EventHandler {
   std::size_t nodes_ = 0;
 };
 
+/// Hands events on with their columns in the user's text.
+class PlacedEvents : public YAML::EventHandler {
+ public:
+  PlacedEvents(const SurrogatePairs& pairs, YAML::EventHandler& next)
+      : pairs_(pairs), next_(next) {}
+
+  void OnDocumentStart(const YAML::Mark& mark) override { next_.OnDocumentStart(placed(mark)); }
+  void OnDocumentEnd() override { next_.OnDocumentEnd(); }
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    next_.OnNull(placed(mark), anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    next_.OnAlias(placed(mark), anchor);
+  }
+  void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
+    next_.OnAnchor(placed(mark), name);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    next_.OnScalar(placed(mark), tag, anchor, value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value style) override {
+    next_.OnSequenceStart(placed(mark), tag, anchor, style);
+  }
+  void OnSequenceEnd() override { next_.OnSequenceEnd(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value style) override {
+    next_.OnMapStart(placed(mark), tag, anchor, style);
+  }
+  void OnMapEnd() override { next_.OnMapEnd(); }
+
+  [[nodiscard]] YAML::Mark placed(YAML::Mark mark) const {
+    mark.column = pairs_.column(mark.line, mark.column);
+    return mark;
+  }
+
+ private:
+  const SurrogatePairs& pairs_;
+  YAML::EventHandler& next_;
+};
+
 /// Byte-order mark and carriage returns of Windows removed.
 std::string normalised(std::string text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
@@ -221,11 +264,13 @@ SourceStop parser_complaint(const SourceText& source, const YAML::Exception& err
 
 void parse_into(const SourceText& source, const SourceLimits& limits, SourceNode& root) {
   check_characters(source);
-  std::istringstream stream(source.text());
+  const SurrogatePairs pairs(source.text());
+  std::istringstream stream(pairs.text());
   try {
     YAML::Parser parser(stream);
     TreeBuilder builder(source, limits, root);
-    if (!parser.HandleNextDocument(builder)) return;
+    PlacedEvents events(pairs, builder);
+    if (!parser.HandleNextDocument(events)) return;
     struct Refuser : TreeBuilder {
       using TreeBuilder::TreeBuilder;
       void OnDocumentStart(const YAML::Mark& mark) override {
@@ -235,8 +280,10 @@ void parse_into(const SourceText& source, const SourceLimits& limits, SourceNode
     };
     SourceNode ignored;
     Refuser refuser(source, limits, ignored);
-    parser.HandleNextDocument(refuser);
-  } catch (const YAML::Exception& error) {
+    PlacedEvents further(pairs, refuser);
+    parser.HandleNextDocument(further);
+  } catch (YAML::Exception& error) {
+    error.mark.column = pairs.column(error.mark.line, error.mark.column);
     throw parser_complaint(source, error);
   }
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/input_file.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/solids/mesh/mesh_cursor.hpp>
 #include <polhode/solids/mesh/read_mesh.hpp>
@@ -46,13 +43,9 @@ Mesh read_mesh(const std::string& path, double factor) {
   std::error_code no_matter;
   if (std::filesystem::is_directory(path, no_matter))
     throw InputError(path, "a directory is not a mesh", "Name a .msh, .vtu or .inp file in it");
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw InputError(path, format("the file cannot be opened ({})", std::strerror(errno)),
-                     "Check its name; names in a model are relative to the model file's folder");
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad())
-    throw InputError(path, "the file cannot be read to its end", "Check that it is a plain file");
+  std::string bytes;
+  if (const auto fault = read_input(path, bytes))
+    throw InputError(path, "the file " + fault->what, fault->hint);
   return parse_mesh(path, bytes, factor);
 }
 
