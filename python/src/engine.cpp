@@ -111,13 +111,13 @@ std::string Engine::summary() {
 }
 
 nb::bytes Engine::state() const {
-  const std::string bytes = state_bytes(simulation_->system(), simulation_->state());
+  const std::string bytes = sealed_state(simulation_->system(), simulation_->state());
   return nb::bytes(bytes.data(), bytes.size());
 }
 
 void Engine::restore(const nb::bytes& bytes) {
   const Use used(*this);
-  State state = state_from_bytes(simulation_->system(), {bytes.c_str(), bytes.size()}, "state");
+  State state = state_from_sealed(simulation_->system(), {bytes.c_str(), bytes.size()}, "state");
   simulation_ = std::make_unique<Simulation>(model(), std::move(state));
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contact histories: transfer from step to step, to and from State::contacts.
 #include <algorithm>
+#include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/core/error.hpp>
 #include <polhode/system/history_record.hpp>
 
 namespace polhode::contact {
@@ -97,6 +99,38 @@ void ContactSet::save(State& state) {
   }
   saved_ = out;
   loaded_ = true;
+}
+
+void ContactSet::check_memory(const State& state, const std::string& where) const {
+  const std::vector<double>& in = state.contacts;
+  const auto require = [&](bool holds) {
+    if (!holds)
+      throw InputError(where, "has contacts that this model cannot have",
+                       "Take another checkpoint; this one is damaged");
+  };
+  const auto is_whole = [](double x, double least, double most) {
+    return x >= least && x <= most && x == std::floor(x);
+  };
+  if (in.empty()) return;
+  require(is_whole(in[0], 0.0, static_cast<double>(in.size() - 1)));
+  const std::size_t head = 2 + static_cast<std::size_t>(in[0]) + switches_.size();
+  if (in.size() == head) return;
+  const std::size_t points = head + kNumbersOf<ReferenceRecord> * references_.size();
+  const std::size_t count = impulses_ ? kNumbersOf<ImpulseRecord> : kNumbersOf<PointRecord>;
+  require(in.size() >= points && (in.size() - points) % count == 0);
+  require(std::all_of(in.begin() + static_cast<std::ptrdiff_t>(head),
+                      in.begin() + static_cast<std::ptrdiff_t>(points),
+                      [](double x) { return std::isfinite(x); }));
+  const double last_shape = static_cast<double>(shapes_.size()) - 1.0, last_feature = 0x7fffffff;
+  for (std::size_t at = points; at < in.size(); at += count) {
+    const auto pair = read_record<PairRecord>(in.data() + at);
+    require(is_whole(pair.a, 0.0, last_shape) && is_whole(pair.b, 0.0, last_shape) &&
+            is_whole(pair.kind, 0.0, static_cast<double>(GapKind::rim_bar)) &&
+            is_whole(pair.i, -1.0, last_feature) && is_whole(pair.j, -1.0, last_feature));
+    if (!impulses_)
+      require(is_whole(read_record<PointRecord>(in.data() + at).phase, 0.0,
+                       static_cast<double>(ContactPhase::restitution)));
+  }
 }
 
 void ContactSet::load(const State& state) {

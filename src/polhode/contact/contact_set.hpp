@@ -112,6 +112,9 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   /// Stores numbers of the caller's with the state, such as sums over the run.
   void keep_totals(State& state, const std::vector<double>& totals);
   [[nodiscard]] static std::vector<double> totals_in(const State& state);
+  /// Checks the histories of a state that was read. @param where  First part of the message.
+  /// @throws InputError for shapes and features that do not exist.
+  void check_memory(const State& state, const std::string& where) const;
   [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
 
   ImpulsiveContacts* impulsive() override { return this; }

@@ -39,6 +39,7 @@ void ContactStatistics::begin(State& state) {
 
 void ContactStatistics::resume(const State& state) {
   if (!contacts_) return;
+  contacts_->check_memory(state, "restart");
   totals_ = contact::ContactSet::totals_in(state);
   const std::size_t wanted = total_count();
   const ImpulseFigures search = impulse_figures();
@@ -153,8 +154,10 @@ double ContactStatistics::unresolved() const {
 
 ContactStatistics::NearFloor ContactStatistics::near_floor() const {
   if (totals_.size() < kHead || totals_[kNearFloor] == 0.0) return {};
-  const auto name = [&](double shape) {
-    return contacts_->shapes().at(static_cast<std::size_t>(shape)).name;
+  const std::vector<contact::PlacedShape>& shapes = contacts_->shapes();
+  const auto name = [&](double shape) -> std::string {
+    if (!(shape >= 0.0 && shape < static_cast<double>(shapes.size()))) return "";
+    return shapes[static_cast<std::size_t>(shape)].name;
   };
   return {static_cast<std::int64_t>(totals_[kNearFloor]), name(totals_[kNearFloor + 1]),
           name(totals_[kNearFloor + 2])};

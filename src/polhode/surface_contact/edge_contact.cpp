@@ -256,8 +256,10 @@ std::vector<SurfacePointReport> EdgeContact::point_reports(const NodeStep& insta
   for (int slot = 0; slot < slots(); ++slot) {
     const EdgeMemory kept = memory_of(history, slot);
     if (!(kept.normal_force > 0.0)) continue;
-    const int partner = static_cast<int>(kept.partner) - 1,
-              firsts = static_cast<int>(sides_.first.edges.size());
+    const int firsts = static_cast<int>(sides_.first.edges.size());
+    const int partners = slot < firsts ? slots() - firsts : firsts;
+    if (!(kept.partner >= 1.0 && kept.partner <= partners)) continue;
+    const int partner = static_cast<int>(kept.partner) - 1;
     const int e = slot < firsts ? slot : partner, f = slot < firsts ? partner : slot - firsts;
     FourMoves at;
     for (int k = 0; k < 4; ++k) {

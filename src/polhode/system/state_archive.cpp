@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include <polhode/core/error.hpp>
@@ -23,7 +25,13 @@ class Writer {
     static_assert(std::is_arithmetic_v<T> && sizeof(T) == 8);
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
-  void operator()(int value) { (*this)(std::int64_t{value}); }
+  /// A number of the motion.
+  void motion(double value) { (*this)(value); }
+  void motions(const std::vector<double>& values) { (*this)(values); }
+  /// A length that is 1.
+  void unit(double /*length*/) const {}
+  /// A whole number from `least` to `most`.
+  void whole(std::int64_t value, std::int64_t /*least*/, std::int64_t /*most*/) { (*this)(value); }
   void operator()(const std::vector<double>& values) {
     (*this)(static_cast<std::int64_t>(values.size()));
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
@@ -31,7 +39,7 @@ class Writer {
   /// A list with `count` entries or none; blocks are followed by their bodies.
   template <class T>
   void optional(const std::vector<T>& list, std::size_t /*count*/) {
-    (*this)(list.empty() ? 0 : 1);
+    whole(list.empty() ? 0 : 1, 0, 1);
     if constexpr (std::is_arithmetic_v<T>)
       if (!list.empty()) (*this)(list);
   }
@@ -49,10 +57,24 @@ class Reader {
     static_assert(std::is_arithmetic_v<T> && sizeof(T) == 8);
     take(&value, sizeof(T));
   }
-  void operator()(int& value) {
+  void motion(double& value) {
+    (*this)(value);
+    if (!(std::abs(value) < kLargest)) throw InputError(where_, "is no state", kHint);
+  }
+  void motions(std::vector<double>& values) {
+    (*this)(values);
+    for (const double value : values)
+      if (!(std::abs(value) < kLargest)) throw InputError(where_, "is no state", kHint);
+  }
+  void unit(double length) const {
+    if (!(std::abs(length - 1.0) < kUnitSlack)) throw InputError(where_, "is no state", kHint);
+  }
+  template <class Whole>
+  void whole(Whole& value, std::int64_t least, std::int64_t most) {
     std::int64_t wide = 0;
     (*this)(wide);
-    value = static_cast<int>(wide);
+    if (wide < least || wide > most) throw InputError(where_, "is no state", kHint);
+    value = static_cast<Whole>(wide);
   }
   /// A list of the length required by the system.
   void operator()(std::vector<double>& values) {
@@ -64,8 +86,7 @@ class Reader {
   template <class T>
   void optional(std::vector<T>& list, std::size_t count) {
     int there = 0;
-    (*this)(there);
-    if (there != 0 && there != 1) throw InputError(where_, "is no state", kHint);
+    whole(there, 0, 1);
     list.assign(there == 1 ? count : 0, T{});
     if constexpr (std::is_arithmetic_v<T>)
       if (!list.empty()) (*this)(list);
@@ -89,6 +110,10 @@ class Reader {
 
  private:
   static constexpr const char* kHint = "Take another checkpoint; this one is damaged";
+  /// Bound of the numbers of a motion, so that their squares and differences are finite.
+  static constexpr double kLargest = 1e150;
+  /// Bound of the rounding of unit quaternions, which runs keep at 1e-15.
+  static constexpr double kUnitSlack = 1e-6;
 
   void take(void* target, std::size_t size) {
     if (size > bytes_.size()) throw InputError(where_, "ends in the middle of a state", kHint);
@@ -104,11 +129,16 @@ class Reader {
 template <class Archive, class Block>
 void body(Archive& archive, Block& block, int lane) {
   const auto lane3 = [&](auto& x) {
-    for (int i = 0; i < 3; ++i) archive(x[i][lane]);
+    for (int i = 0; i < 3; ++i) archive.motion(x[i][lane]);
   };
   lane3(block.r);
   lane3(block.r_rest);
-  for (int i = 0; i < 4; ++i) archive(block.q[i][lane]);
+  double square = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    archive.motion(block.q[i][lane]);
+    square += block.q[i][lane] * block.q[i][lane];
+  }
+  archive.unit(std::sqrt(square));
   lane3(block.v);
   lane3(block.W);
   lane3(block.a);
@@ -124,7 +154,7 @@ template <class Archive, class Block>
 void rates_of_body(Archive& archive, Block& block, int lane) {
   for (auto* x :
        {&block.a, &block.A, &block.h_dot, &block.a_rate, &block.A_rate, &block.h_dot_rate})
-    for (int i = 0; i < 3; ++i) archive((*x)[i][lane]);
+    for (int i = 0; i < 3; ++i) archive.motion((*x)[i][lane]);
 }
 
 template <class Archive, class Sum>
@@ -133,8 +163,10 @@ void exact_sum(Archive& archive, Sum& s) {
   archive(s.rest);
 }
 
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+
 template <class Archive, class AnyLedger>
-void ledger(Archive& archive, AnyLedger& l) {
+void ledger(Archive& archive, const System& system, AnyLedger& l) {
   archive(l.initial_energy);
   archive(l.initial_potential);
   for (int i = 0; i < 3; ++i) archive(l.initial_p[i]);
@@ -156,20 +188,21 @@ void ledger(Archive& archive, AnyLedger& l) {
   archive(l.errors.largest);
   archive(l.errors.sum);
   archive(l.errors.time);
-  archive(l.errors.body);
-  archive(l.errors.node);
-  archive(l.errors.steps);
-  archive(l.errors.hard);
+  archive.whole(l.errors.body, -1, system.body_count() - 1);
+  archive.whole(l.errors.node, -1,
+                static_cast<std::int64_t>(system.initial_state().node_x.size() / 3) - 1);
+  archive.whole(l.errors.steps, 0, kMost);
+  archive.whole(l.errors.hard, 0, kMost);
   archive(l.errors.hard_time);
-  archive(l.steps);
-  archive(l.rejected);
-  archive(l.iterations);
+  archive.whole(l.steps, 0, kMost);
+  archive.whole(l.rejected, 0, kMost);
+  archive.whole(l.iterations, 0, kMost);
 }
 
 /// The whole state in a fixed order; one function serves both directions.
 template <class Archive, class AnyState>
 void whole_state(Archive& archive, const System& system, AnyState& state) {
-  archive(state.t);
+  archive.motion(state.t);
   for (int i = 0; i < system.body_count(); ++i) {
     const int slot = system.slot(i);
     body(archive, state.blocks[static_cast<std::size_t>(slot / kLanes)], slot % kLanes);
@@ -179,45 +212,62 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
     const int slot = system.slot(i);
     rates_of_body(archive, state.rates[static_cast<std::size_t>(slot / kLanes)], slot % kLanes);
   }
-  archive(state.rates_dt);
+  archive.motion(state.rates_dt);
   archive.optional(state.node_rates, 2 * state.node_a.size());
   archive(state.lambda);
   archive(state.history);
-  archive(state.node_x);
-  archive(state.node_v);
-  archive(state.node_a);
-  archive(state.node_past);
+  archive.motions(state.node_x);
+  archive.motions(state.node_v);
+  archive.motions(state.node_a);
+  archive.motions(state.node_past);
   archive(state.element_history);
   archive.sized(state.contacts);
-  archive(state.past_count);
-  archive(state.past_next);
-  for (int k = 0; k < kPast; ++k) archive(state.past_time[k]);
-  archive(state.dt_last);
-  archive(state.dt_next);
+  archive.whole(state.past_count, 0, kPast);
+  archive.whole(state.past_next, 0, kPast - 1);
+  for (int k = 0; k < kPast; ++k) archive.motion(state.past_time[k]);
+  archive.motion(state.dt_last);
+  archive.motion(state.dt_next);
   archive(state.error_last);
   archive(state.turned);
-  archive(state.easy_steps);
-  ledger(archive, state.ledger);
+  archive.whole(state.easy_steps, -1, std::numeric_limits<int>::max());
+  ledger(archive, system, state.ledger);
 }
+
+constexpr std::size_t kDigest = 64;
 
 }  // namespace
 
 std::string state_bytes(const System& system, const State& state) {
   Writer writer;
-  writer(system.body_count());
+  writer(std::int64_t{system.body_count()});
   whole_state(writer, system, state);
   return std::move(writer.bytes);
 }
 
 State state_from_bytes(const System& system, std::string_view bytes, std::string_view where) {
   Reader reader(bytes, where);
-  int bodies = 0;
+  std::int64_t bodies = 0;
   reader(bodies);
   reader.expect(bodies, system.body_count(), "bodies");
   State state = system.initial_state();
   whole_state(reader, system, state);
   reader.expect_end();
   return state;
+}
+
+std::string sealed_state(const System& system, const State& state) {
+  std::string bytes = state_bytes(system, state);
+  bytes += sha256_hex(bytes);
+  return bytes;
+}
+
+State state_from_sealed(const System& system, std::string_view bytes, std::string_view where) {
+  constexpr const char* kHint = "Take it again from a simulation of the same model";
+  if (bytes.size() < kDigest) throw InputError(where, "is no state", kHint);
+  const std::string_view state = bytes.substr(0, bytes.size() - kDigest);
+  if (sha256_hex(state) != bytes.substr(state.size()))
+    throw InputError(where, "is damaged: its checksum is wrong", kHint);
+  return state_from_bytes(system, state, where);
 }
 
 std::string state_hash(const System& system, const State& state) {
