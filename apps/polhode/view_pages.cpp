@@ -83,11 +83,13 @@ SceneData scene_of_model(const ViewRequest& request, SceneOptions options) {
 }  // namespace
 
 bool is_results(const std::string& path) {
-  return fs::is_directory(path) || fs::path(path).extension() == ".h5";
+  std::error_code ignored;  // Names may be longer than the file system allows.
+  return fs::is_directory(path, ignored) || fs::path(path).extension() == ".h5";
 }
 
 std::string results_path(const std::string& path) {
-  return fs::is_directory(path) ? path + "/" + io::results::kFileName : path;
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? path + "/" + io::results::kFileName : path;
 }
 
 SceneData scene_of(const ViewRequest& request) {

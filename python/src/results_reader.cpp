@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hdf5.h>
+#include <algorithm>
 
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/checksums.hpp>
+#include <polhode/io/results/hdf5_id.hpp>
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
@@ -34,7 +37,7 @@ class ResultsReader {
   [[nodiscard]] std::vector<std::string> paths() const {
     std::vector<std::string> list;
     const auto visit = [](hid_t, const char* name, const H5O_info_t* info, void* out) -> herr_t {
-      if (info->type == H5O_TYPE_DATASET)
+      if (info->type == H5O_TYPE_DATASET && io::results::kChecksums != std::string("/") + name)
         static_cast<std::vector<std::string>*>(out)->emplace_back(std::string("/") + name);
       return 0;
     };
@@ -55,10 +58,16 @@ class ResultsReader {
     switch (H5Tget_class(type)) {
       case H5T_STRING:
         return texts(set, type, count);
-      case H5T_INTEGER:
-        return nb::cast(array_of(numbers<std::int64_t>(set, H5T_NATIVE_INT64, count), shape));
-      default:
-        return nb::cast(array_of(numbers<double>(set, H5T_NATIVE_DOUBLE, count), shape));
+      case H5T_INTEGER: {
+        std::vector<std::int64_t> values = numbers<std::int64_t>(set, H5T_NATIVE_INT64, count);
+        check(set, name, {values.begin(), values.end()}, shape, true);
+        return nb::cast(array_of(std::move(values), shape));
+      }
+      default: {
+        std::vector<double> values = numbers<double>(set, H5T_NATIVE_DOUBLE, count);
+        check(set, name, values, shape, false);
+        return nb::cast(array_of(std::move(values), shape));
+      }
     }
   }
 
@@ -86,8 +95,48 @@ class ResultsReader {
   }
 
  private:
+  /// Compares stored numbers with their checksums, in the frames that are complete.
+  void check(hid_t set, const std::string& name, const std::vector<double>& values,
+             const std::vector<std::size_t>& shape, bool integer) const {
+    namespace r = io::results;
+    if (shape.empty() || H5Aexists(set, r::kChecksumColumn) <= 0) return;
+    const Handle attribute(H5Aopen(set, r::kChecksumColumn, H5P_DEFAULT), H5Aclose);
+    double given = -1.0;
+    H5Aread(attribute, H5T_NATIVE_DOUBLE, &given);
+    const Handle sums(H5Dopen2(file_, r::kChecksums, H5P_DEFAULT), H5Dclose);
+    const Handle time(H5Dopen2(file_, r::kTime, H5P_DEFAULT), H5Dclose);
+    const std::vector<hsize_t> dims = extent(sums), times = extent(time);
+    if (dims.size() != 2 || times.empty() ||
+        !(given >= 0.0 && given < static_cast<double>(dims[1])))
+      damaged(name, "has lost its checksums");
+    const auto column = static_cast<std::size_t>(given);
+    const std::size_t frames = std::min<std::size_t>({shape[0], times[0], dims[0]});
+    const std::vector<double> all = numbers<double>(sums, H5T_NATIVE_DOUBLE, dims[0] * dims[1]);
+    const std::size_t size = shape[0] == 0 ? 0 : values.size() / shape[0];
+    for (std::size_t k = 0; k < frames; ++k)
+      if (r::checksum({values.data() + k * size, size}, integer) != all[k * dims[1] + column])
+        damaged(name, format("differs from its checksum in frame {}", k));
+  }
+
+  [[noreturn]] void damaged(const std::string& name, const std::string& what) const {
+    throw io::FileError(path_, format("is damaged: '{}' {}", name, what),
+                        "Copy the file again, or run the model again");
+  }
+
+  static std::vector<hsize_t> extent(hid_t set) {
+    if (set < 0) return {};
+    const Handle space(H5Dget_space(set), H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(space);
+    std::vector<hsize_t> dims(static_cast<std::size_t>(std::max(rank, 0)));
+    if (!dims.empty()) H5Sget_simple_extent_dims(space, dims.data(), nullptr);
+    return dims;
+  }
+
   static hid_t open(const std::string& path) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    io::hdf5::prepare();
+    if (!io::results::survives_a_walk(path))
+      throw io::FileError(path, "is damaged: its structure is broken",
+                          "Run the model again, or copy the file again");
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_file_locking(access, false, true);
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);

@@ -26,6 +26,9 @@ struct Slice {
   std::vector<std::string> labels;  ///< One that is empty: a number without components.
 };
 
+/// Most coordinates of a joint.
+constexpr std::int64_t kMostCoordinates = 6;
+
 std::vector<std::string> labels_of(std::size_t size) {
   if (size == 1) return {""};
   if (size == 3) return {"x", "y", "z"};
@@ -58,9 +61,11 @@ std::vector<Slice> slices_of(const io::ResultsReader& results) {
   const std::vector<std::string> joint_names = results.names(joints + "/names");
   const std::vector<std::int64_t> first = results.numbers(joints + "/first"),
                                   count = results.numbers(joints + "/count");
-  for (std::size_t k = 0; k < std::min(joint_names.size(), first.size()); ++k)
+  if (first.size() != joint_names.size() || count.size() != joint_names.size())
+    results.refuse("its lists of joints do not fit each other");
+  for (std::size_t k = 0; k < joint_names.size(); ++k)
     for (const char* q : {"coordinates", "rates"})
-      if (count[k] > 0) {
+      if (count[k] > 0 && count[k] <= kMostCoordinates) {
         std::vector<std::string> labels;
         for (std::int64_t c = 0; c < count[k]; ++c) labels.push_back(format("{}", c));
         if (labels.size() == 1) labels = {""};
@@ -71,6 +76,8 @@ std::vector<Slice> slices_of(const io::ResultsReader& results) {
   const std::vector<std::string> load_names = results.names(loads + "/names"),
                                  load_types = results.names(loads + "/types");
   const std::vector<std::int64_t> load_first = results.numbers(loads + "/first");
+  if (load_types.size() != load_names.size() || load_first.size() != load_names.size())
+    results.refuse("its lists of loads do not fit each other");
   for (std::size_t k = 0; k < load_names.size(); ++k) {
     auto at = static_cast<std::size_t>(load_first[k]);
     for (const LoadChannel& c : load_kind(load_types[k]).channels) {
@@ -127,7 +134,9 @@ class Columns {
     auto [entry, fresh] = read_.try_emplace(slice.path);
     if (fresh) entry->second = results_.read(slice.path);
     const std::vector<double>& all = entry->second;
-    const std::size_t width = results_.find(slice.path)->size();
+    const io::ResultsReader::DataSet* set = results_.find(slice.path);
+    const std::size_t width = set == nullptr ? 0 : set->size();
+    if (slice.first + k >= width) results_.refuse(format("'{}' is too short", slice.path));
     std::vector<double> values;
     for (std::size_t at = slice.first + k; at < all.size(); at += width) values.push_back(all[at]);
     return values;

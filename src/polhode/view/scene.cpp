@@ -67,6 +67,8 @@ std::vector<double> energy_drift(const io::ResultsReader& results, std::size_t e
                             potential = results.read(group + "/potential", every),
                             put_in = results.read(group + "/put_in", every),
                             dissipated = results.read(group + "/dissipated", every);
+  for (const std::vector<double>* part : {&potential, &put_in, &dissipated})
+    if (part->size() != kinetic.size()) results.refuse("its energies do not fit each other");
   double largest = 0.0;
   for (std::size_t f = 0; f < kinetic.size(); ++f)
     for (double part : {kinetic[f], potential[f], kinetic[f] + potential[f], put_in[f]})

@@ -178,6 +178,8 @@ void add_connections(Json& manifest, const io::ResultsReader& results, const Mod
   const std::vector<std::string> load_names = results.names(packed_loads + "/names"),
                                  load_types = results.names(packed_loads + "/types");
   const std::vector<std::int64_t> load_first = results.numbers(packed_loads + "/first");
+  if (load_types.size() != load_names.size() || load_first.size() != load_names.size())
+    results.refuse("its lists of loads do not fit each other");
   for (std::size_t k = 0; k < load_names.size(); ++k) {
     Json entry = {{"name", load_names[k]}, {"type", load_types[k]}, {"first", load_first[k]}};
     Json columns = Json::array();

@@ -15,11 +15,22 @@ solids::Mesh mesh_of_results(const io::ResultsReader& results, const std::string
                                   offsets = results.numbers(group + "/elements/offsets"),
                                   types = results.numbers(group + "/elements/vtk_type");
   mesh.nodes.resize(results.vectors(group + "/nodes/reference").size() / 3);
+  const auto within = [](std::int64_t x, std::size_t end) {
+    return x >= 0 && x < static_cast<std::int64_t>(end);
+  };
+  const auto is_node = [&](std::int64_t node) { return within(node, mesh.nodes.size()); };
+  const auto is_place = [&](std::int64_t place) { return within(place, nodes.size() + 1); };
+  if ((!types.empty() && offsets.size() != types.size() + 1) ||
+      !std::all_of(nodes.begin(), nodes.end(), is_node) ||
+      !std::all_of(offsets.begin(), offsets.end(), is_place))
+    results.refuse(format("the elements of '{}' do not fit each other", group));
   for (std::size_t e = 0; e < types.size(); ++e) {
     const auto shape = std::find_if(
         solids::cell_shapes().begin(), solids::cell_shapes().end(),
         [&](const solids::CellShape& s) { return s.vtk == static_cast<int>(types[e]); });
     if (shape == solids::cell_shapes().end()) continue;
+    if (offsets[e + 1] - offsets[e] != shape->size())
+      results.refuse(format("the elements of '{}' do not fit each other", group));
     if (mesh.blocks.empty() || mesh.blocks.back().type != shape->name)
       mesh.blocks.push_back({shape->name, {}});
     for (std::int64_t k = offsets[e]; k < offsets[e + 1]; ++k)
@@ -144,6 +155,7 @@ void add_solids(Json& manifest, ChunkList& chunks, const io::ResultsReader& resu
       for (const io::ResultsReader::DataSet& set : results.data_sets()) {
         if (set.path.rfind(prefix, 0) != 0 || set.dims.empty()) continue;
         const std::size_t width = set.size() / std::max<std::size_t>(1, all);
+        if (width == 0) results.refuse(format("'{}' is too short", set.path));
         const bool later = part[0] == 'e';
         if (later) chunks.later();
         fields.push_back(

@@ -35,6 +35,7 @@ std::vector<VtkHdfField> fields_in(const io::ResultsReader& results, const std::
 
 /// Sum of initial values and their changes at each frame.
 std::vector<double> moved(const std::vector<double>& start, std::vector<double> changes) {
+  if (start.empty()) return {};
   for (std::size_t i = 0; i < changes.size(); ++i) changes[i] += start[i % start.size()];
   return changes;
 }
@@ -81,6 +82,15 @@ void add_line(VtkHdfFile& file, const io::ResultsReader& results, const std::str
 /// Surfaces of bodies, by their indices in the results.
 using Surfaces = std::vector<std::pair<std::size_t, geometry::TriangleSurface>>;
 
+/// A vector of each body in each frame.
+std::vector<double> body_vectors(const io::ResultsReader& results, const std::string& path,
+                                 std::size_t bodies) {
+  std::vector<double> list = results.read(path);
+  if (list.size() != results.frames() * bodies * 3)
+    results.refuse("its lists of bodies do not fit each other");
+  return list;
+}
+
 /// Adds a grid of surfaces that are moved with their bodies.
 void add_surfaces(VtkHdfFile& file, const io::ResultsReader& results, const std::string& name,
                   const Surfaces& surfaces, std::size_t bodies) {
@@ -101,6 +111,8 @@ void add_surfaces(VtkHdfFile& file, const io::ResultsReader& results, const std:
   using Visit = std::function<Vec3(std::size_t at, const Vec3& arm)>;
   const auto each_point = [&](const Visit& visit) {
     const std::vector<double> q = results.read(group + "/orientation");
+    if (q.size() != results.frames() * bodies * 4)
+      results.refuse("its lists of bodies do not fit each other");
     std::vector<double> list;
     for (std::size_t frame = 0; frame < results.frames(); ++frame)
       for (const auto& [body, surface] : surfaces) {
@@ -117,13 +129,13 @@ void add_surfaces(VtkHdfFile& file, const io::ResultsReader& results, const std:
     return Vec3(list[at], list[at + 1], list[at + 2]);
   };
   grid.positions = [&] {
-    const std::vector<double> r = results.read(group + "/position");
+    const std::vector<double> r = body_vectors(results, group + "/position", bodies);
     return each_point(
         [&](std::size_t at, const Vec3& arm) -> Vec3 { return vector_at(r, at) + arm; });
   };
   const auto velocities = [&] {
-    const std::vector<double> v = results.read(group + "/velocity"),
-                              w = results.read(group + "/angular_velocity");
+    const std::vector<double> v = body_vectors(results, group + "/velocity", bodies),
+                              w = body_vectors(results, group + "/angular_velocity", bodies);
     return each_point([&](std::size_t at, const Vec3& arm) -> Vec3 {
       return vector_at(v, at) + vector_at(w, at).cross(arm);
     });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/results/checksums.hpp>
 #include <polhode/io/results/hdf5_file.hpp>
 #include <polhode/io/results/hdf5_id.hpp>
 
@@ -7,11 +8,11 @@
 #include <cerrno>
 #include <chrono>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include <fcntl.h>
-#include <hdf5.h>
 #include <unistd.h>
 
 #include <polhode/core/error.hpp>
@@ -38,9 +39,6 @@ constexpr std::size_t kNamesBytes = 4096;
 constexpr std::size_t kHoldBytes = std::size_t{8} << 20;
 
 using hdf5::Id;
-
-/// Disables the error stack printed by HDF5; our messages are one sentence.
-void be_silent() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Id access_properties() {
   Id fapl(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -88,7 +86,8 @@ struct Hdf5File::Impl {
   std::vector<Id> datasets;
   hsize_t written = 0;       ///< Frames in the file.
   std::vector<double> held;  ///< Buffered frames.
-  std::size_t held_frames = 0, frame_size = 0;
+  std::size_t held_frames = 0;
+  std::size_t frame_size = 0, given_size = 0;  ///< Numbers of a frame, with and without checksums.
   Clock::time_point last_write = Clock::now();
   std::optional<double> last_time;
   bool failed = false;
@@ -101,10 +100,15 @@ struct Hdf5File::Impl {
     if (status < 0) fail(what);
   }
 
-  void set_channels(std::vector<Channel> list) {
+  /// @param checked  Checksums are stored: a last channel with a number for each other one.
+  void set_channels(std::vector<Channel> list, bool checked) {
     channels = std::move(list);
-    frame_size = 0;
-    for (const Channel& c : channels) frame_size += c.size();
+    given_size = 0;
+    for (const Channel& c : channels) given_size += c.size();
+    frame_size = given_size;
+    if (!checked) return;
+    frame_size += channels.size();
+    channels.push_back({results::kChecksums, {channels.size()}, "-", true});
   }
 
   void create_channel(const Channel& c) {
@@ -123,6 +127,9 @@ struct Hdf5File::Impl {
                H5Dclose);
     if (!dataset.valid()) fail("cannot be written");
     text_attribute(dataset.get(), "unit", c.unit);
+    if (c.path != results::kChecksums)
+      number_attribute(dataset.get(), results::kChecksumColumn,
+                       static_cast<double>(datasets.size()));
     datasets.push_back(std::move(dataset));
   }
 
@@ -179,6 +186,15 @@ struct Hdf5File::Impl {
         H5Aclose);
     if (!attribute.valid()) fail("cannot be written");
     require(H5Awrite(attribute.get(), type.get(), &text), "cannot be written");
+  }
+
+  void number_attribute(hid_t object, const std::string& name, double value) {
+    const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Id attribute(
+        H5Acreate2(object, name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose);
+    if (!attribute.valid()) fail("cannot be written");
+    require(H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value), "cannot be written");
   }
 
   /// The group of that path, made if it is missing.
@@ -263,10 +279,10 @@ Hdf5File::Hdf5File(Hdf5File&&) noexcept = default;
 Hdf5File::Hdf5File(const std::string& path, std::vector<Channel> channels,
                    const std::vector<ChannelView>& views)
     : Hdf5File() {
-  be_silent();
+  hdf5::prepare();
   Impl& m = *impl_;
   m.path = path;
-  m.set_channels(std::move(channels));
+  m.set_channels(std::move(channels), true);
   const Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_istore_k(creation.get(), kIndexHalfSize);
   const Id access = access_properties();
@@ -276,17 +292,22 @@ Hdf5File::Hdf5File(const std::string& path, std::vector<Channel> channels,
   if (!m.file.valid()) m.fail("cannot be written");
   for (const Channel& c : m.channels) m.create_channel(c);
   for (const ChannelView& v : views) m.create_view(v);
+  m.number_attribute(m.group("/").get(), results::kChecksumColumns,
+                     static_cast<double>(m.channels.size() - 1));
 }
 
 Hdf5File Hdf5File::append_to(const std::string& path, std::vector<Channel> channels, double t) {
-  be_silent();
+  hdf5::prepare();
   Hdf5File result;
   Impl& m = *result.impl_;
   m.path = path;
-  m.set_channels(std::move(channels));
+  if (!results::survives_a_walk(path)) m.fail("is damaged: its structure is broken");
   const Id access = access_properties();
   m.file = Id(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose);
   if (!m.file.valid()) m.fail("cannot be opened as results");
+  // Files of earlier versions have no checksums.
+  const Id checksums(H5Dopen2(m.file.get(), results::kChecksums, H5P_DEFAULT), H5Dclose);
+  m.set_channels(std::move(channels), checksums.valid());
   const auto misfit = [&](const std::string& what) {
     return InputError(path, what, "Name another folder for the results with -o");
   };
@@ -327,6 +348,9 @@ Hdf5File::~Hdf5File() {
     if (!impl_->failed) close();
   } catch (const FileError&) {  // close() reports errors.
   }
+  if (!impl_->failed) return;
+  for (Id& dataset : impl_->datasets) dataset.abandon();
+  impl_->file.abandon();
 }
 
 void Hdf5File::attribute(const std::string& group, const std::string& name,
@@ -337,11 +361,7 @@ void Hdf5File::attribute(const std::string& group, const std::string& name,
 
 void Hdf5File::attribute(const std::string& group, const std::string& name, double value) {
   const Id object = impl_->group(group);
-  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Id attribute(
-      H5Acreate2(object.get(), name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
-      H5Aclose);
-  impl_->require(H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value), "cannot be written");
+  impl_->number_attribute(object.get(), name, value);
 }
 
 void Hdf5File::names(const std::string& path, const std::vector<std::string>& values) {
@@ -361,6 +381,7 @@ void Hdf5File::names(const std::string& path, const std::vector<std::string>& va
     impl_->require(
         H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, transfer.get(), pointers.data()),
         "cannot be written");
+  impl_->number_attribute(dataset.get(), results::kListChecksum, results::checksum(values));
 }
 
 void Hdf5File::numbers(const std::string& path, const std::vector<std::int64_t>& values) {
@@ -374,6 +395,9 @@ void Hdf5File::numbers(const std::string& path, const std::vector<std::int64_t>&
     impl_->require(
         H5Dwrite(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
         "cannot be written");
+  impl_->number_attribute(
+      dataset.get(), results::kListChecksum,
+      results::checksum(std::vector<double>(values.begin(), values.end()), true));
 }
 
 void Hdf5File::vectors(const std::string& path, const std::vector<Vec3>& values,
@@ -391,15 +415,26 @@ void Hdf5File::vectors(const std::string& path, const std::vector<Vec3>& values,
         H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
         "cannot be written");
   impl_->text_attribute(dataset.get(), "unit", unit);
+  const std::span<const double> numbers(values.empty() ? nullptr : values.front().data(),
+                                        3 * values.size());
+  impl_->number_attribute(dataset.get(), results::kListChecksum, results::checksum(numbers, false));
 }
 
 void Hdf5File::append(const std::vector<double>& frame) {
   Impl& m = *impl_;
-  if (frame.size() != m.frame_size)
+  if (frame.size() != m.given_size)
     throw std::logic_error("Hdf5File::append: a frame of another size");
   publish();
   m.held.insert(m.held.end(), frame.begin(), frame.end());
   m.last_time = frame.front();
+  if (m.frame_size > m.given_size) {
+    const double* numbers = frame.data();
+    for (std::size_t i = 0; i + 1 < m.channels.size(); ++i) {
+      const std::size_t size = m.channels[i].size();
+      m.held.push_back(results::checksum({numbers, size}, m.channels[i].integer));
+      numbers += size;
+    }
+  }
   ++m.held_frames;
   const std::chrono::duration<double> waited = Clock::now() - m.last_write;
   if (m.written == 0 || waited.count() > kHold || 8 * m.held.size() > kHoldBytes) m.write_held();

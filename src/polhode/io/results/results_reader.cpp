@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/results/checksums.hpp>
 #include <polhode/io/results/hdf5_id.hpp>
 #include <polhode/io/results/results_reader.hpp>
 
@@ -10,7 +11,6 @@
 #include <numeric>
 #include <utility>
 
-#include <hdf5.h>
 #include <unistd.h>
 
 #include <polhode/core/format.hpp>
@@ -26,14 +26,11 @@ namespace fs = std::filesystem;
 using hdf5::Id;
 
 constexpr const char* kHint = "Name the results.h5 that 'polhode run' wrote";
-
-Id open_file(const std::string& path) {
-  Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-#if H5_VERSION_GE(1, 10, 7)
-  H5Pset_file_locking(access.get(), false, true);
-#endif
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose};
-}
+constexpr const char* kCopyAgain = "Copy the file again, or run the model again";
+/// Most numbers that are read at once: a quantity of more than 64 GB is a damaged size.
+constexpr std::size_t kMostNumbers = std::size_t{1} << 33;
+/// Longest list of names, elements or nodes: the numbers of the program have 31 bits.
+constexpr std::size_t kLongestList = std::size_t{1} << 31;
 
 /// Length recorded in the first block of an HDF5 file; 0 if it is no such file. Format of that
 /// block: HDF5 File Format Specification 3.0, section II.A.
@@ -143,6 +140,9 @@ struct ResultsReader::Impl {
   std::uint64_t end = 0;  ///< Length of the file on the disk.
   std::size_t frames = 0;
   std::vector<DataSet> sets;
+  std::size_t checked = 0;           ///< Data sets with a column of checksums.
+  mutable std::vector<double> sums;  ///< Checksums read last, of one frame in sums_every.
+  mutable std::size_t sums_every = 0;
 
   [[nodiscard]] Id open(const std::string& name) const {
     return {H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose};
@@ -151,16 +151,85 @@ struct ResultsReader::Impl {
     throw FileError(path, what, hint);
   }
 
+  /// Numbers of the first `frames` frames of a data set, one in `every`, with those between left
+  /// out; its shape must be that of a channel.
+  [[nodiscard]] std::vector<double> frames_of(const Id& dataset, const std::string& name,
+                                              std::size_t every) const {
+    std::vector<hsize_t> count = extent(dataset.get()), start(count.size(), 0),
+                         stride(count.size(), 1);
+    if (count.empty() || count[0] < frames) fail(format("has too few frames of '{}'", name));
+    count[0] = frames == 0 ? 0 : (frames - 1) / every + 1;
+    stride[0] = every;
+    std::size_t size = 1;
+    for (const hsize_t n : count) {
+      if (n > 0 && size > kMostNumbers / n)
+        fail(format("is damaged: '{}' is too long", name), kCopyAgain);
+      size *= n;
+    }
+    std::vector<double> values(size);
+    if (size == 0) return values;
+    const Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                    H5Sclose);
+    const Id source(H5Dget_space(dataset.get()), H5Sclose);
+    H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), stride.data(), count.data(),
+                        nullptr);
+    if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), source.get(), H5P_DEFAULT,
+                values.data()) < 0)
+      fail(format("cannot be read at '{}'", name), kCopyAgain);
+    return values;
+  }
+
+  /// A length that a list of a results file may have.
+  [[nodiscard]] std::size_t sensible(const std::string& name, hsize_t length) const {
+    if (length >= kLongestList) fail(format("is damaged: '{}' is too long", name), kCopyAgain);
+    return length;
+  }
+
+  /// Compares a constant list with its checksum.
+  void check_list(const Id& dataset, const std::string& name, double sum) const {
+    if (H5Aexists(dataset.get(), results::kListChecksum) <= 0) return;
+    const Id attribute(H5Aopen(dataset.get(), results::kListChecksum, H5P_DEFAULT), H5Aclose);
+    double stored = -1.0;
+    H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &stored);
+    if (stored != sum) fail(format("is damaged: '{}' differs from its checksum", name), kCopyAgain);
+  }
+
+  /// Compares the numbers that were read with their checksums, of files that have them.
+  void check(const Id& dataset, const std::string& name, std::size_t every,
+             const std::vector<double>& values) const {
+    if (values.empty() || H5Aexists(dataset.get(), results::kChecksumColumn) <= 0) return;
+    const Id attribute(H5Aopen(dataset.get(), results::kChecksumColumn, H5P_DEFAULT), H5Aclose);
+    double column = -1.0;
+    H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &column);
+    const Id type(H5Dget_type(dataset.get()), H5Tclose);
+    const bool integer = H5Tget_class(type.get()) == H5T_INTEGER;
+    if (sums.empty() || sums_every != every) {
+      const Id all = open(results::kChecksums);
+      if (all.valid()) sums = frames_of(all, results::kChecksums, every);
+      sums_every = every;
+    }
+    const std::size_t shown = (frames - 1) / every + 1, width = sums.size() / shown;
+    const std::size_t size = values.size() / shown;
+    if (!(column >= 0.0 && column < static_cast<double>(width)))
+      fail(format("is damaged: '{}' has lost its checksums", name), kCopyAgain);
+    for (std::size_t k = 0; k < shown; ++k)
+      if (results::checksum({values.data() + k * size, size}, integer) !=
+          sums[k * width + static_cast<std::size_t>(column)])
+        fail(format("is damaged: '{}' differs from its checksum in frame {}", name, k * every),
+             kCopyAgain);
+  }
+
   static herr_t visit(hid_t object, const char* name, const H5O_info_t* info, void* data) {
     auto& self = *static_cast<Impl*>(data);
     const std::string path = std::string("/") + name;
-    if (info->type != H5O_TYPE_DATASET) return 0;
+    if (info->type != H5O_TYPE_DATASET || path == results::kChecksums) return 0;
     const Id dataset(H5Dopen2(object, name, H5P_DEFAULT), H5Dclose);
     const Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
     // Growing data sets are stored in chunks; lists are not, and views are virtual.
     if (!dataset.valid() || H5Pget_layout(creation.get()) != H5D_CHUNKED) return 0;
     const std::vector<hsize_t> dims = extent(dataset.get());
     if (dims.empty()) return 0;
+    if (H5Aexists(dataset.get(), results::kChecksumColumn) > 0) ++self.checked;
     if (self.copy)
       self.frames =
           std::min<std::size_t>(self.frames, frames_before(dataset.get(), self.end, self.frames));
@@ -172,7 +241,6 @@ struct ResultsReader::Impl {
 
 ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   m.path = path;
   std::error_code error;
   // First the promise: a run that goes on lengthens its file before it promises the length.
@@ -182,8 +250,10 @@ ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<I
   if (promised == 0) m.fail("is no HDF5 file");
   if (promised > m.end && promised < (std::uint64_t{1} << 46))
     m.copy = std::make_unique<FullLengthCopy>(path, promised);
-  m.file = open_file(m.copy ? m.copy->path() : path);
+  const std::string opened = m.copy ? m.copy->path() : path;
   const char* rerun = "Run the model again, or copy the file again";
+  if (!results::survives_a_walk(opened)) m.fail("is damaged: its structure is broken", rerun);
+  m.file = hdf5::open_to_read(opened);
   if (!m.file.valid()) m.fail("is damaged: its index cannot be read", rerun);
   if (attribute("/", "format") != "polhode results")
     m.fail(m.copy ? "is damaged: its header is missing" : "holds no results of Polhode",
@@ -199,6 +269,13 @@ ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<I
   if (!time.valid()) m.fail("has no data set '/time'");
   m.frames = extent(time.get())[0];
   H5Ovisit(m.file.get(), H5_INDEX_NAME, H5_ITER_INC, Impl::visit, &m);
+  if (H5Aexists(m.file.get(), results::kChecksumColumns) > 0) {
+    const Id columns(H5Aopen(m.file.get(), results::kChecksumColumns, H5P_DEFAULT), H5Aclose);
+    double wanted = -1.0;
+    H5Aread(columns.get(), H5T_NATIVE_DOUBLE, &wanted);
+    if (wanted != static_cast<double>(m.checked))
+      m.fail("is damaged: data sets are missing", rerun);
+  }
 }
 
 ResultsReader::~ResultsReader() = default;
@@ -216,27 +293,16 @@ const ResultsReader::DataSet* ResultsReader::find(const std::string& path) const
 
 bool ResultsReader::has(const std::string& path) const { return impl_->open(path).valid(); }
 
+void ResultsReader::refuse(const std::string& what) const {
+  impl_->fail("is damaged: " + what, kCopyAgain);
+}
+
 std::vector<double> ResultsReader::read(const std::string& path, std::size_t every) const {
   const Impl& m = *impl_;
   const Id dataset = m.open(path);
   if (!dataset.valid()) m.fail(format("has no data set '{}'", path));
-  std::vector<hsize_t> count = extent(dataset.get()), start(count.size(), 0),
-                       stride(count.size(), 1);
-  if (count.empty() || count[0] < m.frames) m.fail(format("has too few frames of '{}'", path));
-  count[0] = m.frames == 0 ? 0 : (m.frames - 1) / every + 1;
-  stride[0] = every;
-  const std::size_t size =
-      std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
-  std::vector<double> values(size);
-  if (size == 0) return values;
-  const Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
-                  H5Sclose);
-  const Id source(H5Dget_space(dataset.get()), H5Sclose);
-  H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), stride.data(), count.data(),
-                      nullptr);
-  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), source.get(), H5P_DEFAULT,
-              values.data()) < 0)
-    m.fail(format("cannot be read at '{}'", path), "Copy the file again");
+  std::vector<double> values = m.frames_of(dataset, path, every);
+  m.check(dataset, path, every, values);
   return values;
 }
 
@@ -244,7 +310,7 @@ std::vector<std::string> ResultsReader::names(const std::string& path) const {
   const Id dataset = impl_->open(path);
   if (!dataset.valid()) return {};
   const std::vector<hsize_t> dims = extent(dataset.get());
-  std::vector<char*> pointers(dims.empty() ? 1 : dims[0], nullptr);
+  std::vector<char*> pointers(dims.empty() ? 1 : impl_->sensible(path, dims[0]), nullptr);
   const Id type(H5Dget_type(dataset.get()), H5Tclose);
   if (pointers.empty() || H5Tis_variable_str(type.get()) <= 0 ||
       H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -255,6 +321,7 @@ std::vector<std::string> ResultsReader::names(const std::string& path) const {
     values.emplace_back(p == nullptr ? "" : p);
     if (p != nullptr) H5free_memory(p);
   }
+  impl_->check_list(dataset, path, results::checksum(values));
   return values;
 }
 
@@ -262,10 +329,12 @@ std::vector<std::int64_t> ResultsReader::numbers(const std::string& path) const 
   const Id dataset = impl_->open(path);
   if (!dataset.valid()) return {};
   const std::vector<hsize_t> dims = extent(dataset.get());
-  std::vector<std::int64_t> values(dims.empty() ? 0 : dims[0]);
+  std::vector<std::int64_t> values(dims.empty() ? 0 : impl_->sensible(path, dims[0]));
   if (!values.empty() &&
       H5Dread(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    impl_->fail(format("cannot be read at '{}'", path), "Copy the file again");
+    impl_->fail(format("cannot be read at '{}'", path), kCopyAgain);
+  impl_->check_list(dataset, path,
+                    results::checksum(std::vector<double>(values.begin(), values.end()), true));
   return values;
 }
 
@@ -273,11 +342,13 @@ std::vector<double> ResultsReader::vectors(const std::string& path) const {
   const Id dataset = impl_->open(path);
   if (!dataset.valid()) return {};
   const std::vector<hsize_t> dims = extent(dataset.get());
-  std::vector<double> values(
-      std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>()));
+  std::size_t size = 1;
+  for (const hsize_t n : dims) size = impl_->sensible(path, size * impl_->sensible(path, n));
+  std::vector<double> values(size);
   if (!values.empty() &&
       H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    impl_->fail(format("cannot be read at '{}'", path), "Copy the file again");
+    impl_->fail(format("cannot be read at '{}'", path), kCopyAgain);
+  impl_->check_list(dataset, path, results::checksum(values, false));
   return values;
 }
 

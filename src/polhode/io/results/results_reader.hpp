@@ -12,7 +12,7 @@ namespace polhode::io {
 ///
 /// A truncated file, after an interrupted copy or on a full disk, is read up to its last complete
 /// frame: a sparse copy of the full length is opened instead, and frames with chunks beyond the cut
-/// are left out.
+/// are left out. Numbers and lists are compared with their checksums, if the file has them.
 class ResultsReader {
  public:
   /// A quantity with one entry per frame.
@@ -34,6 +34,8 @@ class ResultsReader {
   [[nodiscard]] const std::vector<DataSet>& data_sets() const;
   [[nodiscard]] const DataSet* find(const std::string& path) const;
   [[nodiscard]] bool has(const std::string& path) const;
+  /// Refuses a file whose lists do not fit each other. @throws FileError
+  [[noreturn]] void refuse(const std::string& what) const;
 
   /// Reads frames 0, every, 2 every, ... of a quantity, consecutively. @throws FileError
   [[nodiscard]] std::vector<double> read(const std::string& path, std::size_t every = 1) const;
