@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes one reader: tests/fuzz/run.sh [seconds, default 600] [build folder] [reader: model (default),
-# gmsh, vtu, abaqus, stl, obj]. Inputs that cause failures are stored in <build folder>/crashes, and the
+# gmsh, vtu, abaqus, stl, obj, results, checkpoint, lists]. Inputs that cause failures are stored in <build folder>/crashes, and the
 # script fails.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -20,8 +20,11 @@ case $reader in
   stl | obj)
     corpus="$root/tests/geometry/data $root/tests/fuzz/found_in_surfaces"
     words=surface.dict ;;
+  results | checkpoint | lists)
+    corpus=
+    words= ;;
   *)
-    echo "There is no reader '$reader': model, gmsh, vtu, abaqus, stl or obj." >&2
+    echo "There is no reader '$reader': model, gmsh, vtu, abaqus, stl, obj, results, checkpoint or lists." >&2
     exit 2 ;;
 esac
 
@@ -34,6 +37,6 @@ mkdir -p "$build/found_$reader" "$build/crashes" "$root/tests/fuzz/found_in_mesh
 fuzzer=$(find "$build" -name "read_${reader}_fuzzer" -type f | head -n 1)
 # shellcheck disable=SC2086
 "$fuzzer" "$build/found_$reader" $corpus \
-  -dict="$root/tests/fuzz/$words" -artifact_prefix="$build/crashes/" \
+  ${words:+-dict="$root/tests/fuzz/$words"} -artifact_prefix="$build/crashes/" \
   -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=8192 -print_final_stats=1
 echo "No input broke the reader in $seconds seconds."
