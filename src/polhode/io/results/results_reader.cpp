@@ -244,6 +244,7 @@ ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<I
   m.path = path;
   std::error_code error;
   // First the promise: a run that goes on lengthens its file before it promises the length.
+  if (!fs::is_regular_file(path, error)) m.fail("is no file");  // a pipe would not end
   const std::uint64_t promised = promised_length(path);
   m.end = fs::file_size(path, error);
   if (error) throw FileError(path, "cannot be read", "Check the path and the permissions");
