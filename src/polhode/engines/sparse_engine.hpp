@@ -29,6 +29,7 @@ class SparseEngine final : public NewtonEngine {
   [[nodiscard]] std::string name() const override;
   void begin_step(const State& state, Trial& trial) override;
   void resume(const State& state, Trial& trial) override;
+  void set_proximal(double epsilon) override { newton_.set_proximal(epsilon); }
   Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
   [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
   [[nodiscard]] int worst_body() const override { return worst_body_; }

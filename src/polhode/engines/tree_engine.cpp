@@ -239,12 +239,18 @@ void TreeEngine::set_step(const State& state, Trial& trial) {
 void TreeEngine::begin_step(const State& state, Trial& trial) {
   set_step(state, trial);
   view_.first_iteration = 1;
+  load_multipliers(trial);
+}
+
+void TreeEngine::load_multipliers(const Trial& trial) {
   for_each_tree_joint([&](double& lane, int row) { lane = trial.lambda[row]; });
 }
 
-void TreeEngine::end_step(const State&, Trial& trial) {
+void TreeEngine::store_multipliers(Trial& trial) {
   for_each_tree_joint([&](double& lane, int row) { trial.lambda[row] = lane; });
 }
+
+void TreeEngine::end_step(const State&, Trial& trial) { store_multipliers(trial); }
 
 void TreeEngine::take_steps(const State& state, const Trial& trial, bool first) {
   if (first) {

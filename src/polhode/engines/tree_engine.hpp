@@ -21,6 +21,12 @@ class TreeEngine final : public NewtonEngine {
 
   [[nodiscard]] std::string name() const override { return "tree"; }
   void begin_step(const State& state, Trial& trial) override;
+  void set_proximal(double epsilon) override { view_.proximal = epsilon; }
+  void store_multipliers(Trial& trial) override;
+  void load_multipliers(const Trial& trial) override;
+  [[nodiscard]] bool has_centre(int interaction) const override {
+    return system_->tree().in_tree[interaction] == 0;
+  }
   Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
   [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
   void add_ground_wrench(double* force, double* moment) const override {

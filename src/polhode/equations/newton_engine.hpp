@@ -27,6 +27,13 @@ class NewtonEngine {
   virtual void begin_step(const State& state, Trial& trial) = 0;
   /// Called when the trial was set back to an iterate of the same step: updates derived data.
   virtual void resume(const State& state, Trial& trial) { begin_step(state, trial); }
+  /// Sets ε of exact rows from now on, see kProximal.
+  virtual void set_proximal(double /*epsilon*/) {}
+  /// Copies the engine's own multipliers to the trial and back, between iterations.
+  virtual void store_multipliers(Trial& /*trial*/) {}
+  virtual void load_multipliers(const Trial& /*trial*/) {}
+  /// Whether a row of an interaction has a proximal centre; rows of tree joints have none.
+  [[nodiscard]] virtual bool has_centre(int /*interaction*/) const { return true; }
   /// One iteration on the trial. `refactor` false: reuse the last factorisation if there is one.
   /// `damping` in (0, 1]: part of the increment that is applied.
   virtual Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) = 0;

@@ -172,7 +172,7 @@ void NewtonSystem::add_pair(int interaction, const PairTerms& terms, const Trial
     is_spring_[row] = terms.compliance[k] != 0.0;
     const double proximal =
         is_spring_[row] ? 0.0
-                        : kProximal * terms.weight[k] * s * (lambda - trial.lambda_centre[row]);
+                        : proximal_ * terms.weight[k] * s * (lambda - trial.lambda_centre[row]);
     rhs_[first + row] = -(row_residual_[row] + proximal);
   }
   if (!tangent) return;
@@ -184,7 +184,7 @@ void NewtonSystem::add_pair(int interaction, const PairTerms& terms, const Trial
   v.G_a = terms.G_a;
   v.G_b = terms.G_b;
   for (int k = 0; k < ref.rows; ++k)
-    v.C[k] = terms.compliance[k] == 0.0 ? kProximal * terms.weight[k] : terms.compliance[k] / s;
+    v.C[k] = terms.compliance[k] == 0.0 ? proximal_ * terms.weight[k] : terms.compliance[k] / s;
 }
 
 void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& terms,

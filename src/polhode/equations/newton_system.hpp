@@ -85,6 +85,8 @@ class NewtonSystem {
   [[nodiscard]] std::span<linear::KktValues::Pair> cleared_couplings();
   /// Selects statics: bodies have no momentum rates.
   void set_static(bool yes) { static_ = yes; }
+  /// Sets ε of exact rows; kProximal unless set.
+  void set_proximal(double epsilon) { proximal_ = epsilon; }
   /// Computes right_hand_side() and the residuals; with `tangent` the values as well.
   void assemble(const State& state, const Trial& trial, bool tangent);
   /// Evaluates only the constraint values at the iterate.
@@ -115,6 +117,7 @@ class NewtonSystem {
   const System* system_;
   MomentumRate form_;
   bool static_ = false;
+  double proximal_ = kProximal;
   KktMap map_;
   std::size_t own_pairs_ = 0;  ///< Of interactions, which come first.
   InteractionSweep sweep_;

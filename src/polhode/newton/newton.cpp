@@ -64,6 +64,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   globalization.limit_prediction();
   engine.begin_step(state, trial);
   std::fill(trial.lambda_centre.begin(), trial.lambda_centre.end(), 0.0);
+  LeastReactions* const reactions = options.reactions;
+  bool finite = !reactions || reactions->begin_step(state, trial, engine);
 
   bool close = false;           // an increment was below the tolerance
   bool iterated_again = false;  // an extra iteration followed
@@ -90,6 +92,10 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
                           (options.jacobian == JacobianPolicy::automatic
                                ? !close || slowly_contracting
                                : (options.jacobian == JacobianPolicy::every_step && it == 0));
+    if (reactions) finite = finite && reactions->apply(state, trial, engine);
+    if (!finite)
+      return fail("the redundant part of the reactions cannot be found, as a value is not finite"),
+             report;
     const Iteration done = globalization.iterate(last, refactor);
     ++report.iterations;
     if (!done.solved) {

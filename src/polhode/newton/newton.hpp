@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/equations/newton_engine.hpp>
+#include <polhode/newton/least_reactions.hpp>
 #include <polhode/newton/newton_report.hpp>
 
 namespace polhode {
@@ -17,8 +18,9 @@ struct NewtonOptions {
   int max_iterations = 12;
   JacobianPolicy jacobian = JacobianPolicy::automatic;
   bool line_search = true;
-  double max_rotation = 2.0;  ///< Largest rotation |Θ| of a body in the step [-].
-  double energy_scale = 0.0;  ///< Energy scale of the run so far [J].
+  double max_rotation = 2.0;            ///< Largest rotation |Θ| of a body in the step [-].
+  double energy_scale = 0.0;            ///< Energy scale of the run so far [J].
+  LeastReactions* reactions = nullptr;  ///< Null where no force depends on redundant reactions.
 };
 
 /// Solves the predicted trial by Newton's method with an extra iteration: conservation to round-off

@@ -8,6 +8,7 @@
 #include <polhode/engines/tree_engine.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/kernels/denormals.hpp>
+#include <polhode/stepping/instant.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/stored_rates.hpp>
 #include <polhode/system/regular_state.hpp>
@@ -65,6 +66,13 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
   size_blocks(system.initial_state(), trial_);
   trial_.lambda.resize(system.rows());
   trial_.lambda_centre.resize(system.rows());
+  if (LeastReactions::may_act(system)) {
+    // The model's own start, so that a restart from any state decides alike.
+    State start = system.initial_state();
+    (void)assemble_positions(system, start);
+    reactions_.emplace(system, start);
+    if (!reactions_->act()) reactions_.reset();
+  }
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
     const InteractionGroup& group = system.group(ref.group);
@@ -117,6 +125,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   const Clock::time_point t1 = Clock::now();
   NewtonOptions scaled = options;
   scaled.energy_scale = state.ledger.energy_scale;
+  if (reactions_) scaled.reactions = &*reactions_;
   NewtonReport report = solve_newton(*system_, state, trial_, *engine_, scaled);
   const Clock::time_point t2 = Clock::now();
   seconds_[0] += seconds(t0, t1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +53,7 @@ class SingleStep {
   const LaneKernels* kernels_;
   EnergyLedger ledger_;
   ImpactResolver impacts_;
+  std::optional<LeastReactions> reactions_;  ///< If friction depends on redundant ones.
   Trial trial_;
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;
