@@ -48,6 +48,7 @@ Json run_json(const Certificate& c, const CertifiedRun& run) {
           {"steps", s.steps},
           {"rejected_steps", s.rejected_steps},
           {"energy_drift", s.energy_drift},
+          {"distrust", s.distrust},
           {"wall_time_s", s.wall_time_s},
           {"cpu_time_s", s.cpu_time_s},
           {"result_hash", s.result_hash}};
@@ -126,13 +127,16 @@ int exit_code(const Certificate& c, const CertifyRequest& request, bool limit_re
     if (run.summary.end == RunEnd::not_converged) return kNotConverged;
     if (run.summary.end == RunEnd::interrupted) return limit_reached ? kLimit : kInterrupted;
   }
-  if (!c.converges()) return kCheckFailed;
+  if (!c.converges() || !c.trusted()) return kCheckFailed;
   return request.within && !too_wide(c, *request.within).empty() ? kCheckFailed : kOk;
 }
 
 void tell(const Certificate& c, const CertifyRequest& request, int code) {
   for (const CertifiedRun& run : c.runs)
     if (run.summary.end == RunEnd::not_converged) say(run.summary.message);
+  for (std::size_t k = 0; k < c.runs.size(); ++k)
+    for (const std::string& reason : c.runs[k].summary.distrust)
+      say(format("warning: nothing is certified, as run {} is not trusted: {}", k + 1, reason));
   for (const CertifiedQuantity& q : c.quantities)
     if (q.report.lost_from)
       say(
@@ -154,15 +158,11 @@ Json certificate_json(const Certificate& c, int code, const std::string& folder)
   for (const CertifiedRun& run : c.runs)
     if (run.setting > 0.0) runs.push_back(run_json(c, run));
   for (const CertifiedQuantity& q : c.quantities) quantities.push_back(quantity_json(q));
-  return {{"exit_code", code},
-          {"converges", c.converges()},
-          {"refines", c.automatic ? "tolerance" : "step"},
-          {"orders", c.orders},
-          {"notes", c.notes},
-          {"runs", runs},
-          {"quantities", quantities},
-          {"results", folder},
-          {"version", POLHODE_VERSION}};
+  return {{"exit_code", code},      {"converges", c.converges()},
+          {"trusted", c.trusted()}, {"refines", c.automatic ? "tolerance" : "step"},
+          {"orders", c.orders},     {"notes", c.notes},
+          {"runs", runs},           {"quantities", quantities},
+          {"results", folder},      {"version", POLHODE_VERSION}};
 }
 
 void write_files(const Certificate& c, const std::string& folder, const Json& json) {

@@ -17,6 +17,7 @@ namespace polhode::cli {
 std::string end_name(int exit_code) {
   switch (exit_code) {
     case kOk:
+    case kCheckFailed:  // finished, but not trusted
       return "finished";
     case kNotConverged:
       return "not_converged";
@@ -106,7 +107,9 @@ std::string summary_table(const RunSummary& s) {
       {"steps", format("{}", s.steps), format("{} rejected, order {}", s.rejected_steps, s.order)},
       {"Newton iterations", format("{}", s.newton_iterations),
        format("{:.2f} a step", static_cast<double>(s.newton_iterations) / steps)},
-      {"energy drift", small(s.energy_drift), "of the largest energy"},
+      {"energy drift", small(s.energy_drift),
+       s.trusted() ? "of the largest energy"
+                   : "of the largest energy; not trusted, see the warnings"},
       {"linear momentum drift", small(s.linear_momentum_drift), "of the largest momentum"},
       {"angular momentum drift", small(s.angular_momentum_drift), "of the largest"},
       {"constraint residual", small(s.constraint_residual_max), "largest of the run"},

@@ -186,12 +186,13 @@ class Result:
         [s]. For an opened file those numbers that follow from its channels."""
         if self._ledger is not None:
             return Report(self._ledger)
-        e = self.energy
-        balance = e.total + e.dissipated - e.put_in
-        size = float(np.max(np.abs(np.concatenate([e.kinetic, e.potential, e.total]))) or 1.0)
-        return Report(t=float(self.time[-1]), steps=int(self.solver.steps[-1]), frames=self.frames,
-                      rejected_steps=int(self.solver.rejected[-1]), newton_iterations=int(self.solver.iterations[-1]),
-                      energy_drift=float(np.max(np.abs(balance - balance[0])) / size))
+        figures = Report(t=float(self.time[-1]), steps=int(self.solver.steps[-1]), frames=self.frames,
+                         rejected_steps=int(self.solver.rejected[-1]), newton_iterations=int(self.solver.iterations[-1]),
+                         energy_drift=float(self.energy.drift[-1]))
+        if trusted := self._store.attribute("/provenance", "trusted"):
+            figures["trusted"] = trusted == "yes"
+            figures["distrust"] = str(self._store.attribute("/provenance", "distrust") or "").splitlines()
+        return figures
 
     @property
     def end(self) -> str:

@@ -37,6 +37,10 @@ class MemoryStore:
             return str(self.channels[path][1])
         return str(self.views[path][4]) if path in self.views else ""
 
+    def attribute(self, path: str, name: str) -> Any:
+        """An attribute of a results file; a run in memory has none."""
+        return None
+
     def title(self) -> str:
         return ""
 
@@ -85,6 +89,10 @@ class FileStore:
 
     def unit(self, path: str) -> str:
         return str(self._reader.attribute(path, "unit") or "")
+
+    def attribute(self, path: str, name: str) -> Any:
+        """An attribute of a group or data set; None if there is none."""
+        return self._reader.attribute(path, name) or None
 
     def title(self) -> str:
         return str(self._reader.attribute("/", "title") or "")

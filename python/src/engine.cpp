@@ -98,7 +98,10 @@ std::string Engine::run(Recording* recording, const std::string& folder,
       },
       &attention.stop);
   if (summary.end == RunEnd::finished || summary.end == RunEnd::not_converged) frame(*simulation_);
-  if (file) file->close();
+  if (file) {
+    file->conclude(summary);
+    file->close();
+  }
   return io::summary_json(summary, {.end = end_name(summary.end),
                                     .exit_code = 0,
                                     .folder = folder,

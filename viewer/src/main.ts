@@ -30,7 +30,7 @@ async function start(app: HTMLElement): Promise<void> {
   document.documentElement.dataset.theme = dark ? "dark" : "light";
 
   const holder = h("main", { class: "view", "aria-label": "Animation" });
-  const drift = h("span", { class: "drift", title: "Change of the energy balance since the start, over the largest energy" });
+  const drift = h("span", { class: "drift", title: "Largest error of the energy balance so far, over the largest energy; the same number as in the summary of the run" });
   const head = h("header", {}, h("h1", {}, m.title || m.source.file || "Model"), drift);
   const side = h("aside", { "aria-label": "Objects and display" });
   const plots = h("section", { class: "plots", "aria-label": "Plots", hidden: true });
@@ -158,8 +158,7 @@ async function start(app: HTMLElement): Promise<void> {
   holder.append(ruler);
 
   const balance = await scene.channel("energy/drift");
-  let worst = 0;
-  for (const x of balance ?? []) worst = Math.max(worst, Math.abs(x));
+  const drift_of_run = balance?.length ? balance[balance.length - 1] : 0;
   const tick = (): void => {
     view.set(player.t);
     const f = view.poses.frame + view.poses.part;
@@ -169,8 +168,8 @@ async function start(app: HTMLElement): Promise<void> {
     play.textContent = player.playing ? "❚❚" : "▶";
     play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
     if (balance && !m.statics) {
-      drift.textContent = `energy drift ${Math.abs(balance[view.poses.frame]).toExponential(1)} (at most ${worst.toExponential(1)})`;
-      drift.classList.toggle("bad", worst > 1e-3);
+      drift.textContent = `energy drift ${balance[view.poses.frame].toExponential(1)} (${drift_of_run.toExponential(1)} at the end)`;
+      drift.classList.toggle("bad", drift_of_run > 1e-3);
     }
     objects.tick();
     legend.tick();

@@ -32,7 +32,7 @@ struct RunOptions {
   ModelArguments model;
   std::string folder, restart, isa;
   std::optional<double> wall_limit;
-  bool json = false, quiet = false, certify = false, view = false;
+  bool json = false, quiet = false, certify = false, view = false, strict = false;
   CertifyRequest certificate;
 };
 
@@ -139,10 +139,12 @@ int run(const RunOptions& options) {
   // The last state is part of the results of a finished or failed run.
   if (summary.end == RunEnd::finished || summary.end == RunEnd::not_converged)
     recorder.frame(simulation);
+  recorder.conclude(summary);
   save();
   recorder.close();
 
   int code = exit_code(summary, limit_reached);
+  if (options.strict && code == kOk && !summary.trusted()) code = kCheckFailed;
   if (!summary.message.empty() && (code == kNotConverged || code == 0)) say(summary.message);
   for (const std::string& warning : summary.warnings) say("warning: " + warning);
   if (code == kInterrupted || code == kLimit)
@@ -188,6 +190,8 @@ Action add_run(CLI::App& command) {
   command.get_option("--within")->needs(certify);
   certify->excludes(command.get_option("--restart"));
   command.add_flag("--view", options->view, "Write view.html into the results folder, and open it");
+  command.add_flag("--strict", options->strict,
+                   "Exit with 6 if a balance does not close or a constraint does not hold");
   command.add_flag("--json", options->json, "Print the summary of the run as one JSON object");
   command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] {

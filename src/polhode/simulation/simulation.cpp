@@ -5,6 +5,7 @@
 #include <polhode/core/clock.hpp>
 #include <polhode/simulation/finite_functions.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
+#include <polhode/simulation/trust.hpp>
 #include <polhode/system/state_archive.hpp>
 
 namespace polhode {
@@ -151,6 +152,8 @@ RunSummary Simulation::summary() const {
   r.order = s.method.control.order;
   r.narration = s.narration;
   r.warnings = s.warnings();
+  if (!s.statics) r.distrust = reasons_for_distrust(s.model.analysis, s.system, l);
+  for (const std::string& reason : r.distrust) r.warnings.push_back("not trusted: " + reason);
   for (int e = 0; e < static_cast<int>(s.map.events.size()); ++e) {
     const auto of = [&](EventMemory::Entry k) { return s.events->memory(s.state, e, k); };
     r.events.push_back({s.map.events[static_cast<std::size_t>(e)].name,

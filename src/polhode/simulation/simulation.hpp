@@ -82,6 +82,10 @@ struct RunSummary {
   double strain_energy = 0.0;           ///< Of a static analysis: in springs, beams and solids [J].
   std::string narration;                ///< Choices and reasons, a few lines.
   std::vector<std::string> warnings;    ///< Conspicuous findings at output times.
+  /// Reasons not to trust the run, a sentence each: balances that do not close, constraints that do
+  /// not hold. They are among the warnings too.
+  std::vector<std::string> distrust;
+  [[nodiscard]] bool trusted() const { return distrust.empty(); }
   /// An event of the model, since the start.
   struct Event {
     std::string name;

@@ -35,18 +35,11 @@ namespace polhode {
 inline constexpr int kSmallSystem = 2000;
 /// Largest number of breaks of a prescribed motion that are checked before a run.
 inline constexpr int kMaxBreaks = 10000;
-/// Estimated error of a step above which the motion is not resolved [-].
-inline constexpr double kUnresolved = 1e-2;
-/// Velocities normal to the constraints, relative to the rows' terms, above which a warning is
-/// given.
-inline constexpr double kFarOff = 0.1;
 /// Largest displacements of a body by the initial assembly: with a given position, and without.
 inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
 
 /// Strain below which it is rounding: the solid counts as unstressed.
 inline constexpr double kRoundedStrain = 1e-10;
-/// Error of a solid's stress above which a warning is given [-].
-inline constexpr double kUncertainStress = 0.1;
 
 struct Simulation::Impl {
   Model model;
@@ -347,64 +340,16 @@ struct Simulation::Impl {
   }
 
   /// Conspicuous findings of steps and of watch_stretches().
-  [[nodiscard]] std::vector<std::string> warnings() const {
-    std::vector<std::string> list = stepper->warnings();
-    for (const SolidMap& solid : map.solids)
-      for (const solids::SolidElements* elements : solid.elements) {
-        const auto least = least_stretches.find(elements);
-        if (least == least_stretches.end()) continue;
-        const std::string text = elements->stretch_warning(least->second);
-        if (!text.empty()) list.push_back(text);
-      }
-    warn_of_errors(list);
-    for (std::size_t i = 0; i < solid_watches.size(); ++i) {
-      const SolidWatch& watch = solid_watches[i];
-      const double error = watch.part(watch.largest_error);
-      if (error > kUncertainStress)
-        list.push_back(format(
-            "solids.{}: the estimated stress error is {:.0f} % (mean over the solid at {} = "
-            "{:.4g}, from jumps between elements); peaks may be less accurate. Use quadratic "
-            "elements, or a finer mesh.",
-            model.solids[i].name, 100.0 * error, statics ? "load factor" : "t", watch.t_largest));
-    }
-    return list;
-  }
-
+  [[nodiscard]] std::vector<std::string> warnings() const;
   /// Body or solid with the largest error of a step.
-  [[nodiscard]] std::string whose_error() const {
-    const StepErrors& e = state.ledger.errors;
-    if (e.body >= 0) return format("body '{}'", system.bodies()[e.body].name);
-    for (std::size_t k = 0; k < map.solids.size(); ++k) {
-      const int node = e.node - map.solids[k].first_node;
-      if (e.node >= 0 && node >= 0 && node < map.solids[k].node_count())
-        return format("node {} of solid '{}'", node, model.solids[k].name);
-    }
-    return e.node >= 0 ? "a beam or cable" : "";
-  }
-
+  [[nodiscard]] std::string whose_error() const;
   /// Adds warnings of steps that do not resolve the motion. The figures are those of the run so
   /// far.
-  void warn_of_errors(std::vector<std::string>& list) const {
-    if (statics) return;
-    const StepErrors& e = state.ledger.errors;
-    const std::string whose = whose_error();
-    if (e.largest > kUnresolved)
-      list.push_back(
-          format("the steps are too long for the motion: the estimated error of {} is {:.2g} of "
-                 "the mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter "
-                 "steps, or give a tolerance",
-                 whose.empty() ? "a body" : whose, e.largest, e.time));
-    if (velocity_residual > kFarOff * velocity_scale)
-      list.push_back(
-          format("velocities violate the joints by {:.2g} of the largest speeds at t = {:.6g} s. "
-                 "Take shorter steps, or rho_inf below 1",
-                 velocity_residual / velocity_scale, velocity_time));
-    if (e.hard > 0)
-      list.push_back(
-          format("Newton's method only just converged in {} of {} steps, first in that "
-                 "to t = {:.6g} s. Take shorter steps",
-                 e.hard, state.ledger.steps, e.hard_time));
-  }
+  void warn_of_errors(std::vector<std::string>& list) const;
+  /// Rounding of velocities, which are increments of positions over the last step [m/s]: relative
+  /// rounding of a sum of few terms, times the largest distance from the origin.
+  /// @eq{velocity-noise}
+  [[nodiscard]] double rounding_of_velocities() const;
 
   /// Rejects a joint that starts beyond its stops by more than their band.
   void refuse_outside_limits(std::size_t index) const {
@@ -475,7 +420,7 @@ struct Simulation::Impl {
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
     velocity_scale = std::max(velocity_scale, v.scale);
-    if (v.residual_before > velocity_residual) {
+    if (v.residual_before > std::max(velocity_residual, rounding_of_velocities())) {
       velocity_residual = v.residual_before;
       velocity_time = state.t;
     }

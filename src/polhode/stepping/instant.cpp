@@ -45,7 +45,9 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   report.residual = report.residual_before;
   report.scale = largest_scale;
   for (int b = 0; b < bodies; ++b)  // rows of bodies at rest have no scale of their own
-    report.scale = std::max(report.scale, s.steps[b].v_n1.lpNorm<Eigen::Infinity>());
+    report.scale = std::max({report.scale, s.steps[b].v_n1.lpNorm<Eigen::Infinity>(),
+                             system.length_scale() * s.steps[b].W_n1.norm()});
+  for (const double v : state.node_v) report.scale = std::max(report.scale, std::abs(v));
   if (report.residual <= 32.0 * kInstantRoundOff * largest_scale) return report;
 
   s.put_masses_and_rows(state);

@@ -25,7 +25,9 @@ struct PositionReport {
 /// Result of the projection of velocities.
 struct VelocityReport {
   double residual_before = 0.0;  ///< Largest |G v| as given [m/s or 1/s].
-  double scale = 0.0;           ///< Largest speed of a body [m/s], or row sum of magnitudes of G v.
+  /// Largest speed of a body, ℓ times its angular velocity, speed of a node [m/s], or row sum of
+  /// magnitudes of G v.
+  double scale = 0.0;
   double residual = 0.0;        ///< Largest |G v| now.
   double largest_change = 0.0;  ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
   int changed_body = -1;

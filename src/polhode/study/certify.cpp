@@ -226,6 +226,11 @@ bool Certificate::finished() const {
   });
 }
 
+bool Certificate::trusted() const {
+  return std::all_of(runs.begin(), runs.end(),
+                     [](const CertifiedRun& run) { return run.summary.trusted(); });
+}
+
 bool Certificate::converges() const {
   return finished() && std::none_of(quantities.begin(), quantities.end(),
                                     [](const auto& q) { return q.report.lost_from.has_value(); });

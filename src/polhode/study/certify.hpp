@@ -51,6 +51,9 @@ struct Certificate {
 
   /// Whether every run was finished.
   [[nodiscard]] bool finished() const;
+  /// Whether every run is trusted: runs that agree on a balance that does not close certify
+  /// nothing.
+  [[nodiscard]] bool trusted() const;
   /// Whether every run was finished and every quantity converges at all times.
   [[nodiscard]] bool converges() const;
 };

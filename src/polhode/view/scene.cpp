@@ -57,31 +57,6 @@ std::size_t choose_every(const io::ResultsReader& results, const SceneOptions& o
   return std::max<std::size_t>(1, (frames + most - 1) / most);
 }
 
-/// Change of total energy, minus work input, plus dissipation, over the largest energy: in double
-/// precision, because 32 bits are not accurate enough.
-std::vector<double> energy_drift(const io::ResultsReader& results, std::size_t every) {
-  const std::string group = io::results::kEnergy;
-  for (const char* name : {"/kinetic", "/potential", "/total", "/put_in", "/dissipated"})
-    if (results.find(group + name) == nullptr) return {};
-  const std::vector<double> kinetic = results.read(group + "/kinetic", every),
-                            potential = results.read(group + "/potential", every),
-                            put_in = results.read(group + "/put_in", every),
-                            dissipated = results.read(group + "/dissipated", every);
-  for (const std::vector<double>* part : {&potential, &put_in, &dissipated})
-    if (part->size() != kinetic.size()) results.refuse("its energies do not fit each other");
-  double largest = 0.0;
-  for (std::size_t f = 0; f < kinetic.size(); ++f)
-    for (double part : {kinetic[f], potential[f], kinetic[f] + potential[f], put_in[f]})
-      largest = std::max(largest, std::abs(part));
-  std::vector<double> drift(kinetic.size());
-  for (std::size_t f = 0; f < drift.size(); ++f) {
-    const double change = (kinetic[f] - kinetic[0]) + (potential[f] - potential[0]) +
-                          (dissipated[f] - dissipated[0]) - (put_in[f] - put_in[0]);
-    drift[f] = largest > 0.0 ? change / largest : 0.0;
-  }
-  return drift;
-}
-
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -182,11 +157,6 @@ SceneData make_scene(const io::ResultsReader& results, const Model* model,
            {"dims", set.dims},
            {"data", chunks.floats(results.read(set.path, scene.every), set.size())}});
     }
-  if (const std::vector<double> drift = energy_drift(results, scene.every); !drift.empty())
-    channels.push_back({{"path", "energy/drift"},
-                        {"unit", "-"},
-                        {"dims", Json::array()},
-                        {"data", chunks.floats(drift, 1)}});
   // Replaces bytes that are not UTF-8: titles and names come from files.
   scene.manifest = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
   return scene;

@@ -100,6 +100,7 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
     scalar(x);
+  scalar(frame.energy_drift);
   vector(b.linear_momentum);
   vector(b.angular_momentum);
   scalar(frame.dt);

@@ -181,6 +181,8 @@ struct Hdf5File::Impl {
     const Id type = text_type();  // Of any length: Python reads it as text, not as bytes.
     const char* text = value.c_str();
     const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+    if (H5Aexists(object, name.c_str()) > 0)  // of the run that is continued
+      require(H5Adelete(object, name.c_str()), "cannot be written");
     const Id attribute(
         H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
         H5Aclose);

@@ -204,6 +204,10 @@ void Recorder::sync() {
   if (impl_->probes) impl_->probes->sync();
 }
 
+void Recorder::conclude(const RunSummary& summary) {
+  if (impl_->results) impl_->results->conclude(summary.distrust);
+}
+
 void Recorder::close() {
   if (impl_->results) impl_->results->close();
   if (impl_->paraview) impl_->paraview->close();

@@ -31,6 +31,9 @@ class Recorder {
   /// Waits until the disk has all that was recorded: before a checkpoint, which must not be newer
   /// than the files that are continued from it. @throws FileError
   void sync();
+  /// Stores with the results whether the run is trusted, see RunSummary::distrust. @throws
+  /// FileError
+  void conclude(const RunSummary& summary);
   /// Writes all buffered data and closes the files. @throws FileError
   void close();
 

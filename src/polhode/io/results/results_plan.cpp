@@ -13,11 +13,9 @@ constexpr StoredQuantity kBodyQuantities[] = {{"position", 3, "m"},
 constexpr StoredQuantity kReactions[] = {{"force", 3, "N"}, {"moment", 3, "N m"}};
 constexpr StoredQuantity kCoordinates[] = {{"coordinates", 1, "rad or m"},
                                            {"rates", 1, "rad/s or m/s"}};
-constexpr StoredQuantity kEnergies[] = {{"kinetic", 1, "J"},
-                                        {"potential", 1, "J"},
-                                        {"put_in", 1, "J"},
-                                        {"dissipated", 1, "J"},
-                                        {"total", 1, "J"}};
+constexpr StoredQuantity kEnergies[] = {{"kinetic", 1, "J"}, {"potential", 1, "J"},
+                                        {"put_in", 1, "J"},  {"dissipated", 1, "J"},
+                                        {"total", 1, "J"},   {"drift", 1, "-"}};
 
 constexpr StoredQuantity kContactNumbers[] = {
     {"gap", 1, "m"}, {"normal_force", 1, "N"}, {"impulse", 1, "N s"}, {"energy_lost", 1, "J"}};

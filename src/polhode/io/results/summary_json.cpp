@@ -18,6 +18,8 @@ std::string summary_json(const RunSummary& s, const RunPlace& place) {
       {"steps", s.steps},
       {"rejected_steps", s.rejected_steps},
       {"newton_iterations", s.newton_iterations},
+      {"trusted", s.trusted()},
+      {"distrust", s.distrust},
       {"energy_drift", s.energy_drift},
       {"linear_momentum_drift", s.linear_momentum_drift},
       {"angular_momentum_drift", s.angular_momentum_drift},

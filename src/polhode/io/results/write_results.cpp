@@ -114,6 +114,7 @@ ResultsFrame results_frame(const Simulation& simulation) {
   frame.losses = simulation.contact_losses();
   frame.balance = simulation.balance();
   const State& state = simulation.state();
+  frame.energy_drift = drifts(state.ledger).energy;
   frame.dt = state.dt_last;
   frame.steps = state.ledger.steps;
   frame.iterations = state.ledger.iterations;
@@ -145,6 +146,11 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
 
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
   return ResultsFile(Hdf5File::append_to(path, plan_results(layout).channels, t));
+}
+
+void ResultsFile::conclude(const std::vector<std::string>& distrust) {
+  file_.attribute(results::kProvenance, "trusted", distrust.empty() ? "yes" : "no");
+  file_.attribute(results::kProvenance, "distrust", lines(distrust));
 }
 
 void ResultsFile::append(const ResultsFrame& frame) {

@@ -82,6 +82,7 @@ struct ResultsFrame {
   std::vector<ContactReport> contacts;
   ContactLosses losses;
   Balance balance;
+  double energy_drift = 0.0;                             ///< See drifts() [-].
   double dt = 0.0;                                       ///< Length of the last step [s].
   std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
 };
@@ -98,6 +99,8 @@ class ResultsFile {
   static ResultsFile append_to(const std::string& path, const ResultsLayout& layout, double t);
 
   void append(const ResultsFrame& frame);  ///< @throws FileError
+  /// Stores the reasons not to trust the run; none: it is trusted. @throws FileError
+  void conclude(const std::vector<std::string>& distrust);
   [[nodiscard]] std::size_t frames() const { return file_.frames(); }
   /// Time of the last frame; nothing if there is none.
   [[nodiscard]] std::optional<double> last_time() const { return file_.last_time(); }

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/model/model.hpp>
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+/// Largest relative drift of the balances that a method allows [-]: with exact conservation that of
+/// round-off over any run, otherwise that of second-order errors.
+[[nodiscard]] double allowed_drift(const AnalysisSpec& analysis);
+
+/// Reasons not to trust a run so far, a sentence each: a balance of energy or momentum that does
+/// not close, or constraints that do not hold, to what the method can reach. @eq{trust}
+[[nodiscard]] std::vector<std::string> reasons_for_distrust(const AnalysisSpec& analysis,
+                                                            const System& system,
+                                                            const Ledger& ledger);
+
+}  // namespace polhode
