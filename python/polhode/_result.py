@@ -142,8 +142,8 @@ class Result:
     time (T,) [s]; bodies[name].position (T, 3) [m], .orientation (T, 4) quaternion (w, x, y, z) body
     to world, .velocity [m/s], .angular_velocity [rad/s]; joints[name].force (T, 3) [N] of the first
     body on the second, .moment [N m], .coordinates (T, free) [rad or m], .rates; loads, contacts,
-    solids, beams and cables by name; energy, momentum and solver. Arrays of a run are views of the
-    engine's memory, not copies. docs/reference/results_file.md lists them all.
+    solids, beams and cables by name; energy, momentum and solver. Arrays are read-only, and those of a run
+    are views of the engine's memory: `.copy()` gives one to change. docs/reference/results_file.md lists them all.
     """
 
     def __init__(self, store: Store, ledger: "Optional[dict[str, Any]]" = None) -> None:

@@ -13,8 +13,8 @@ import numpy as np
 from . import _native
 from ._errors import NotConverged
 from ._model import Model, Overrides, load
-from ._result import Report, Result
-from ._stores import MemoryStore
+from ._result import Report, Result, Table
+from ._stores import MemoryStore, read_only
 
 
 class Step(NamedTuple):
@@ -54,19 +54,59 @@ class _Things(Mapping):  # type: ignore[type-arg]
         return f"<{', '.join(self._index)}>"
 
 
-class BodyNow:
-    """A body at the present time; position, orientation, velocity and angular_velocity can be set."""
+class _Now(Mapping):  # type: ignore[type-arg]
+    """A body, joint or load at the present time: every access reads the simulation as it is then.
+
+    Quantities are attributes or items; arrays are read-only copies.
+    """
+
+    def __init__(self, read: "Callable[[], Mapping[str, Any]]") -> None:
+        object.__setattr__(self, "_read", read)
+
+    def __getitem__(self, name: str) -> Any:
+        now = self._read()
+        if name not in now:
+            near = _native.closest(str(name), list(now))
+            raise KeyError(f"{name}. " + (f"Did you mean '{near}'?" if near else f"There are: {', '.join(now)}."))
+        return read_only(now[name])
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{name} cannot be set: it follows from the motion of the bodies. "
+                             "Set position, orientation, velocity or angular_velocity of a body")
+
+    def __iter__(self) -> "Iterator[str]":
+        return iter(self._read())
+
+    def __len__(self) -> int:
+        return len(self._read())
+
+    def __dir__(self) -> "list[str]":
+        return [*self]
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{name:20} {value}" for name, value in self._read().items())
+
+
+class BodyNow(_Now):
+    """A body at the present time; position, orientation, velocity and angular_velocity can be set.
+
+    Every access reads the simulation as it is then. Arrays are read-only copies: set a whole quantity.
+    """
 
     _settable = ("position", "orientation", "velocity", "angular_velocity")
 
     def __init__(self, simulation: "Simulation", index: int) -> None:
+        super().__init__(lambda: simulation._engine.body(index))
         object.__setattr__(self, "_simulation", simulation)
         object.__setattr__(self, "_index", index)
-
-    def __getattr__(self, name: str) -> Any:
-        if name not in (*self._settable, "acceleration"):
-            raise AttributeError(name)
-        return self._simulation._engine.body(self._index)[name]
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self._settable:
@@ -84,11 +124,47 @@ class BodyNow:
         self._simulation._engine.set_body(self._index, *numbers.values())
 
     def __dir__(self) -> "list[str]":
-        return [*self._settable, "acceleration", "set"]
+        return [*self, "set"]
 
-    def __repr__(self) -> str:
-        now = self._simulation._engine.body(self._index)
-        return "\n".join(f"{name:18} {value}" for name, value in now.items())
+
+class LoadNow(_Now):
+    """A load at the present time: its reported quantities by name, or its numbers by index in the order
+    of docs/reference/loads.md. Every access reads the simulation as it is then."""
+
+    def __init__(self, engine: Any, index: int) -> None:
+        channels = engine.load_channels(index)
+
+        def read() -> "dict[str, Any]":
+            numbers, now, first = np.array(engine.load(index)), {}, 0
+            for name, size in channels:
+                now[name] = numbers[first] if size == 1 else numbers[first : first + size]
+                first += size
+            return now
+
+        super().__init__(read)
+        object.__setattr__(self, "_numbers", lambda: engine.load(index))
+
+    def __getitem__(self, name: Any) -> Any:
+        return super().__getitem__(name) if isinstance(name, str) else self._numbers()[name]
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        return np.array(self._numbers(), dtype=dtype)
+
+
+class ProbeNow(Table):
+    """A probe at the present time: its columns. Every access reads the simulation as it is then."""
+
+    def __init__(self, engine: Any, name: str) -> None:
+        super().__init__(name, engine.probe(name)[0], None)
+        self._engine = engine
+
+    @property
+    def _rows(self) -> Any:
+        return read_only(np.array(self._engine.probe(self.name)[1]))
+
+    @_rows.setter
+    def _rows(self, rows: Any) -> None:
+        """The constructor of Table has none to give."""
 
 
 class Simulation:
@@ -100,7 +176,9 @@ class Simulation:
 
     bodies[name] has position (3,) [m], orientation (4,) quaternion (w, x, y, z) body to world,
     velocity [m/s], angular_velocity [rad/s], acceleration [m/s²]: of the centre of mass, world axes.
-    joints[name] has coordinates, rates, force and moment. Raises ModelError for a model with faults.
+    joints[name] has coordinates, rates, force, moment and residual. What bodies[name], joints[name],
+    loads[name] and probes[name] return follows the simulation: every access reads its present state, and
+    arrays are read-only copies. Raises ModelError for a model with faults.
     """
 
     def __init__(self, model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides = None) -> None:
@@ -126,30 +204,23 @@ class Simulation:
     @property
     def joints(self) -> "_Things":
         """Joints by name: coordinates, rates, force, moment, residual."""
-        return _Things(self._engine.joints, lambda i: Report(self._engine.joint(i)))
+        return _Things(self._engine.joints, lambda i: _Now(lambda: self._engine.joint(i)))
 
     @property
     def loads(self) -> "_Things":
-        """Loads by name: their reported numbers, in the order of docs/reference/loads.md."""
-        return _Things(self._engine.loads, self._engine.load)
+        """Loads by name: their reported quantities, also by number in the order of docs/reference/loads.md."""
+        return _Things(self._engine.loads, lambda i: LoadNow(self._engine, i))
 
     @property
     def probes(self) -> "_Things":
         """Probes of output.probes by name: present values by column, sim.probes["tip"].z."""
-        from ._result import Table
-
         names = self._engine.probes
-
-        def now(index: int) -> Table:
-            header, row = self._engine.probe(names[index])
-            return Table(names[index], header, np.array(row))
-
-        return _Things(names, now)
+        return _Things(names, lambda i: ProbeNow(self._engine, names[i]))
 
     @property
     def energy(self) -> Report:
         """kinetic, potential, total, put_in, dissipated [J]; linear_momentum, angular_momentum."""
-        return Report(self._engine.energy())
+        return Report({name: read_only(value) for name, value in self._engine.energy().items()})
 
     @property
     def ledger(self) -> Report:

@@ -6,7 +6,16 @@ from __future__ import annotations
 import os
 from typing import Any, Optional, Union
 
+import numpy as np
+
 from . import _native
+
+
+def read_only(array: Any) -> Any:
+    """The same object; a NumPy array can no longer be written: results are what a run computed."""
+    if isinstance(array, np.ndarray):
+        array.flags.writeable = False
+    return array
 
 
 class MemoryStore:
@@ -15,6 +24,9 @@ class MemoryStore:
     def __init__(self, channels: "dict[str, Any]", views: "dict[str, Any]", fixed: "dict[str, Any]",
                  probes: "Optional[dict[str, Any]]" = None) -> None:
         self.channels, self.views, self.fixed, self._probes = channels, views, fixed, probes or {}
+        for array in [*(channel[0] for channel in channels.values()), *fixed.values(),
+                      *(rows for _, rows in self._probes.values())]:
+            read_only(array)
 
     def probes(self) -> "dict[str, Any]":
         """Names of columns and rows of each probe."""
@@ -69,13 +81,11 @@ class FileStore:
         if path not in self._known:
             raise KeyError(path)
         if path not in self._kept:
-            self._kept[path] = self._reader.read(path)
+            self._kept[path] = read_only(self._reader.read(path))
         return self._kept[path]
 
     def probes(self) -> "dict[str, Any]":
         """Names of columns and rows of each probe, from the tables beside the file."""
-        import numpy as np
-
         tables = {}
         folder = os.path.join(os.path.dirname(self.file), "probes")
         for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
@@ -84,7 +94,7 @@ class FileStore:
                     header = file.readline().rstrip("\n").split(",")
                     lines = [line for line in file if line.endswith("\n")]  # a row that is being written is skipped
                 rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, len(header)))
-                tables[name[:-4]] = (header, rows)
+                tables[name[:-4]] = (header, read_only(rows))
         return tables
 
     def unit(self, path: str) -> str:

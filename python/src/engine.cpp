@@ -9,6 +9,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/results/summary_json.hpp>
+#include <polhode/loads/registry.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/stepping/start.hpp>
 #include <polhode/system/state_archive.hpp>
@@ -198,6 +199,15 @@ nb::dict joint_report(Engine& engine, int joint) {
   result["force"] = array_of(r.force);
   result["moment"] = array_of(r.moment);
   result["residual"] = r.residual;
+  if (!r.friction.empty()) {
+    result["friction"] = list(std::move(r.friction));
+    result["slips"] = r.slips;
+  }
+  if (!r.stops.empty()) result["stops"] = list(std::move(r.stops));
+  if (!r.power.empty()) {
+    result["power"] = list(std::move(r.power));
+    result["work"] = list(std::move(r.work));
+  }
   return result;
 }
 
@@ -310,6 +320,17 @@ void bind_engine(nb::module_& m) {
       .def("joint", &joint_report, nb::arg("index"))
       .def(
           "load", [](Engine& e, int i) { return e.use()->load(i); }, nb::arg("index"))
+      .def(
+          "load_channels",
+          [](Engine& e, int i) {
+            const LoadSpec& load = e.model().loads.at(static_cast<std::size_t>(i));
+            std::vector<std::pair<std::string, int>> channels;
+            if (load.solid < 0)
+              for (const LoadChannel& c : load_kind(load.type).channels)
+                channels.emplace_back(c.name, c.size);
+            return channels;
+          },
+          nb::arg("index"), "Name and number of values of each reported quantity of a load.")
       .def_prop_ro("probes", [](Engine& e) { return names_of(e.model().output.probes); })
       .def(
           "probe",

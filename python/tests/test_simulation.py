@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Stepping, setting, copying; loads from Python; modes and matrices."""
 
+import pathlib
+
 import numpy as np
 import pytest
 import scipy.linalg
@@ -148,3 +150,49 @@ def test_matrices_are_those_of_two_masses() -> None:
     G = matrices.G.toarray()
     assert G.shape == (10, 12) and np.linalg.matrix_rank(G) == 10
     assert G[:, z] == pytest.approx(np.zeros((10, 2)), abs=1e-14)
+
+
+def test_handles_follow_the_simulation(pendulum: polhode.Model) -> None:
+    pendulum.add_load("spring", "torsional_spring", joint="hinge", stiffness=1.5, damping=0.1)
+    pendulum.output.probes = {"tip": {"body": "arm"}}
+    sim = polhode.Simulation(pendulum)
+    body, joint, load, probe = sim.bodies["arm"], sim.joints["hinge"], sim.loads["spring"], sim.probes["tip"]
+    angle = joint.coordinates[0]
+    for step in range(20):
+        sim.step()
+        # The handles kept from the start are those that are looked up now, bit for bit.
+        assert joint.coordinates[0] == sim.joints["hinge"].coordinates[0] != angle
+        assert np.array_equal(body.position, sim.bodies["arm"].position)
+        assert load.angle == sim.loads["spring"].angle and probe.z == sim.probes["tip"].z == body.position[2]
+        assert np.array_equal(np.asarray(load), [load[k] for k in range(len(np.asarray(load)))])
+        angle = joint.coordinates[0]
+    kept = sim.state
+    sim.run(0.5)
+    later = joint.coordinates[0]
+    sim.restore(kept)
+    assert joint.coordinates[0] == angle != later
+    assert "coordinates" in joint and dict(joint)["coordinates"][0] == angle and "coordinates" in repr(joint)
+
+
+def test_what_would_change_nothing_is_refused(pendulum: polhode.Model) -> None:
+    sim = polhode.Simulation(pendulum)
+    with pytest.raises(AttributeError, match="coordinates cannot be set.*Set position"):
+        sim.joints["hinge"].coordinates = [1.0]
+    with pytest.raises(TypeError):
+        sim.joints["hinge"]["coordinates"] = [1.0]
+    for array in (sim.bodies["arm"].position, sim.joints["hinge"].coordinates, sim.energy.linear_momentum):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 9.0
+    with pytest.raises(AttributeError, match="Did you mean 'coordinates'"):
+        sim.joints["hinge"].cordinates
+
+
+def test_results_cannot_be_overwritten(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
+    pendulum.output.probes = {"tip": {"body": "arm"}}
+    r = polhode.run(pendulum, output=tmp_path / "out")
+    for result in (r, polhode.open(tmp_path / "out")):
+        for array in (result.time, result.bodies["arm"].position, result.joints["hinge"].force, result.probes["tip"].z):
+            with pytest.raises(ValueError, match="read-only"):
+                array[0] = 9.0
+        own = result.bodies["arm"].position.copy()
+        own[0] = 9.0
