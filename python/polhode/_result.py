@@ -186,8 +186,9 @@ class Result:
         [s]. For an opened file those numbers that follow from its channels."""
         if self._ledger is not None:
             return Report(self._ledger)
-        figures = Report(t=float(self.time[-1]), steps=int(self.solver.steps[-1]), frames=self.frames,
-                         rejected_steps=int(self.solver.rejected[-1]), newton_iterations=int(self.solver.iterations[-1]),
+        solver = self.solver
+        figures = Report(t=float(self.time[-1]), steps=int(solver.steps[-1]), frames=self.frames,
+                         rejected_steps=int(solver.rejected[-1]), newton_iterations=int(solver.iterations[-1]),
                          energy_drift=float(self.energy.drift[-1]))
         if trusted := self._store.attribute("/provenance", "trusted"):
             figures["trusted"] = trusted == "yes"

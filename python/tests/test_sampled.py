@@ -89,7 +89,7 @@ def test_joints_loads_and_probes_are_read_after_each_step() -> None:
 
 @pytest.mark.parametrize("ask", [
     lambda s: s.bodies["it"].position, lambda s: s.joints["rail"].coordinates, lambda s: s.energy, lambda s: s.step(),
-    lambda s: s.loads["push"], lambda s: s.copy(), lambda s: s.ledger,
+    lambda s: s.loads["push"].force, lambda s: s.copy(), lambda s: s.ledger,
 ])
 def test_a_force_that_asks_its_own_simulation_is_told_what_to_do(ask: "Callable[[polhode.Simulation], Any]") -> None:
     known: "list[polhode.Simulation]" = []

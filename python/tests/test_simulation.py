@@ -158,7 +158,7 @@ def test_handles_follow_the_simulation(pendulum: polhode.Model) -> None:
     sim = polhode.Simulation(pendulum)
     body, joint, load, probe = sim.bodies["arm"], sim.joints["hinge"], sim.loads["spring"], sim.probes["tip"]
     angle = joint.coordinates[0]
-    for step in range(20):
+    for _ in range(20):
         sim.step()
         # The handles kept from the start are those that are looked up now, bit for bit.
         assert joint.coordinates[0] == sim.joints["hinge"].coordinates[0] != angle
@@ -184,7 +184,7 @@ def test_what_would_change_nothing_is_refused(pendulum: polhode.Model) -> None:
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 9.0
     with pytest.raises(AttributeError, match="Did you mean 'coordinates'"):
-        sim.joints["hinge"].cordinates
+        _ = sim.joints["hinge"].cordinates
 
 
 def test_results_cannot_be_overwritten(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
