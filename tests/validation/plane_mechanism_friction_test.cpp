@@ -153,6 +153,22 @@ TEST_P(PlaneMechanism, RubsAsTheSameWithoutRedundantRows) {
   }
 }
 
+// Which joints take part follows from the model alone, and their reactions from the state.
+TEST_P(PlaneMechanism, ContinuesAfterARestartBitForBit) {
+  const std::string text =
+      GetParam().text(true) + "analysis: {duration: 1 s, step: 2 ms}\noutput: {hdf5: false}\n";
+  Simulation straight = made(text);
+  for (int k = 0; k < 50; ++k) ASSERT_TRUE(straight.step(1e3).accepted);
+  Simulation again(io::read_model_text(text, "model.yaml", {}), straight.state());
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_TRUE(straight.step(1e3).accepted);
+    ASSERT_TRUE(again.step(1e3).accepted);
+  }
+  EXPECT_EQ(straight.state().history, again.state().history);
+  EXPECT_EQ(straight.state().lambda, again.state().lambda);
+  EXPECT_EQ(straight.body(1).r, again.body(1).r);
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, PlaneMechanism,
                          testing::Values(Mechanism{"QuickReturn", quick_return, 6, 1.2},
                                          Mechanism{"FourBar", four_bar, 3, 1.0},
