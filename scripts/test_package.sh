@@ -44,7 +44,7 @@ root=$work/empty
 mkdir -p "$root/opt"
 tar xzf "$archive" -C "$root/opt"
 program=$(cd "$root" && echo opt/polhode-*/bin/polhode)
-for library in $(ldd "$built" | grep -oE '/[^ ]*/(ld-linux[^ ]*|lib(c|m|dl|rt|pthread)\.so[^ ]*)'); do
+for library in $(ldd "$built" | grep -oE '/[^ ]*/(ld-linux[^ ]*|lib(c|m|dl|rt|pthread|resolv)\.so[^ ]*)'); do
   mkdir -p "$root$(dirname "$library")"
   cp -L "$library" "$root$library"
 done
