@@ -421,6 +421,7 @@ class Builder {
       for (const std::string& name : names) {
         try {
           if (switched_contact(model_, name)) continue;  // see build_contacts()
+          if (switched_controller(model_, name) >= 0) continue;
           const SwitchTarget target = switch_target(model_, name);
           const auto index = static_cast<std::size_t>(target.index);
           const std::string kind = target.joint ? Joint::kKind : model_.loads[index].type;

@@ -22,9 +22,23 @@ struct EventMemory {
 
 /// Layout of each controller's numbers, behind those of events: number of evaluations, time of the
 /// last one [s], its output and its slope [1/s], the error and its rate, its integral [s], the
-/// filtered rate; then the states of its transfer function.
+/// filtered rate, its value just before that time, whether it is switched off, and whether nothing
+/// used it from that time on; then the states of its transfer function.
 struct ControllerMemory {
-  enum Entry : int { kCount, kTime, kValue, kSlope, kError, kRate, kIntegral, kLag, kSize };
+  enum Entry : int {
+    kCount,
+    kTime,
+    kValue,
+    kSlope,
+    kError,
+    kRate,
+    kIntegral,
+    kLag,
+    kBefore,
+    kOff,
+    kIdle,
+    kSize
+  };
   [[nodiscard]] static int size(const ControllerSpec& spec) {
     return kSize + std::max(static_cast<int>(spec.denominator.size()) - 1, 0);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/model/event_spec.hpp>
 
+#include <algorithm>
+
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -22,12 +24,51 @@ InputError unknown_target(const Model& model, const std::string& name,
   if (contacts)
     for (const BodySpec& body : model.bodies)
       if (!body.shapes.empty()) names.push_back(body.name);
-  const std::string what = contacts ? "joint, load, pair of contacts or body" : "joint or load";
-  const char* kinds =
+  std::string what = contacts ? "joint, load, pair of contacts or body" : "joint or load";
+  std::string kinds =
       contacts ? "Joints, loads, pairs and bodies that touch: " : "Joints and loads: ";
+  if (!model.controllers.empty()) {
+    for (const ControllerSpec& controller : model.controllers) names.push_back(controller.name);
+    what = contacts ? "joint, load, controller, pair of contacts or body"
+                    : "joint, load or controller";
+    kinds = contacts ? "Joints, loads, controllers, pairs and bodies that touch: "
+                     : "Joints, loads and controllers: ";
+  }
   return {name, format("unknown {} '{}'", what, name),
           did_you_mean(name, names) + (names.empty() ? "The model has neither joints nor loads"
                                                      : kinds + name_list(names))};
+}
+
+bool is_in(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Adds the loads in joints to the events that switch these.
+void add_companions(const Model& model, std::vector<EventSpec>& events) {
+  const std::vector<EventSpec> given = events;
+  const auto any = [&](const auto& condition) {
+    return std::any_of(given.begin(), given.end(), condition);
+  };
+  for (const LoadSpec& load : model.loads) {
+    if (load.joint.empty() || load.words.contains("stays")) continue;
+    const bool named =
+        any([&](const EventSpec& e) { return is_in(e.on, load.name) || is_in(e.off, load.name); });
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      const EventSpec& event = given[k];
+      if (is_in(event.on, load.name) || is_in(event.off, load.name)) continue;
+      if (is_in(event.off, load.joint) || is_in(event.off, load.joint_2)) {
+        events[k].off.push_back(load.name);
+        continue;
+      }
+      const auto closed = [&](const std::string& joint) {  // after this event, for certain
+        return joint.empty() || is_in(event.on, joint) ||
+               !any([&](const EventSpec& e) { return is_in(e.off, joint); });
+      };
+      const bool closes = is_in(event.on, load.joint) || is_in(event.on, load.joint_2);
+      if (!named && closes && closed(load.joint) && closed(load.joint_2))
+        events[k].on.push_back(load.name);
+    }
+  }
 }
 
 }  // namespace
@@ -72,6 +113,7 @@ std::vector<EventSpec> all_events(const Model& model) {
     add("force", joint.breaks.force);
     add("moment", joint.breaks.moment);
   }
+  add_companions(model, events);
   return events;
 }
 

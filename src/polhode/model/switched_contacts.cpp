@@ -52,4 +52,14 @@ std::optional<std::array<int, 2>> switched_contact(const Model& model, const std
   return std::array{found->a.index, found->b.index};
 }
 
+int switched_controller(const Model& model, const std::string& name) {
+  const auto named = [&](const auto& thing) { return thing.name == name; };
+  if (std::any_of(model.joints.begin(), model.joints.end(), named) ||
+      std::any_of(model.loads.begin(), model.loads.end(), named) || switched_contact(model, name))
+    return -1;
+  const auto found = std::find_if(model.controllers.begin(), model.controllers.end(), named);
+  return found == model.controllers.end() ? -1
+                                          : static_cast<int>(found - model.controllers.begin());
+}
+
 }  // namespace polhode

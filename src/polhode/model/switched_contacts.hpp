@@ -20,4 +20,8 @@ inline constexpr int kEverySide = std::numeric_limits<int>::max();
 [[nodiscard]] std::optional<std::array<int, 2>> switched_contact(const Model& model,
                                                                  const std::string& name);
 
+/// Controller switched by this name in an event, an index into Model::controllers; -1 if there is
+/// none, or something else of that name that can be switched.
+[[nodiscard]] int switched_controller(const Model& model, const std::string& name);
+
 }  // namespace polhode

@@ -16,6 +16,8 @@ namespace {
 
 /// Difference of times, as a part of a step, below which they are equal.
 constexpr double kSameSampleTime = 1e-9;
+/// Time of the last evaluation where there was none since a controller began [s].
+constexpr double kNever = -1.0;
 
 /// Control error on one side of an instant.
 struct Error {
@@ -47,7 +49,8 @@ ControllerOutputs own_outputs(Model& model) {
 }
 
 Controllers::Controllers(const Simulation& simulation, const SystemMap& map,
-                         ControllerOutputs outputs, int order) {
+                         ControllerOutputs outputs, int order)
+    : system_(&simulation.system()) {
   const Model& model = simulation.model();
   int memory =
       simulation.system().memory() + EventMemory::kSize * static_cast<int>(map.events.size());
@@ -71,6 +74,80 @@ Controllers::Controllers(const Simulation& simulation, const SystemMap& map,
     items_.push_back(std::move(item));
     memory += ControllerMemory::size(spec);
   }
+  find_users(model, map);
+}
+
+void Controllers::find_users(const Model& model, const SystemMap& map) {
+  const auto item_of = [&](const TimeFunctionPtr& f) -> Item* {
+    const int k = f ? f->controller() : -1;
+    return k < 0 ? nullptr : &items_[static_cast<std::size_t>(k)];
+  };
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    const LoadSpec& load = model.loads[i];
+    const auto use = [&](const TimeFunctionPtr& f) {
+      Item* item = item_of(f);
+      if (item && map.load[i] >= 0) item->loads.push_back(map.load[i]);
+      if (item && map.load[i] < 0) item->always_used = true;
+    };
+    use(load.value);
+    if (load.vector)
+      for (const TimeFunctionPtr& f : *load.vector) use(f);
+    for (const auto& [key, law] : load.laws) use(law);
+  }
+  for (const CableLineSpec& cable : model.cables)
+    for (const TimeFunctionPtr& f :
+         {cable.tension, cable.muscle ? cable.muscle->activation : nullptr})
+      if (Item* item = item_of(f)) item->always_used = true;
+  for (std::size_t k = 0; k < model.controllers.size(); ++k)
+    if (Item* outer = item_of(model.controllers[k].setpoint))
+      outer->inner.push_back(static_cast<int>(k));
+}
+
+bool Controllers::idle(const Item& item, const State& state) const {
+  if (item.always_used || (item.loads.empty() && item.inner.empty())) return false;
+  const auto is_idle = [&](int k) {
+    const Item& inner = items_[static_cast<std::size_t>(k)];
+    return is_off(inner, state) || idle(inner, state);
+  };
+  return std::all_of(item.loads.begin(), item.loads.end(),
+                     [&](int i) { return system_->is_off(state, i); }) &&
+         std::all_of(item.inner.begin(), item.inner.end(), is_idle);
+}
+
+bool Controllers::limited(const Item& item, const State& state, double change) const {
+  if (item.always_used || !item.loads.empty() || item.inner.empty()) return false;
+  return std::all_of(item.inner.begin(), item.inner.end(), [&](int k) {
+    const Item& inner = items_[static_cast<std::size_t>(k)];
+    const ControllerSpec& spec = *inner.spec;
+    const double value =
+        state.history[static_cast<std::size_t>(inner.memory + ControllerMemory::kValue)];
+    const double gain = spec.denominator.empty()
+                            ? spec.proportional + spec.integral
+                            : spec.numerator.front() / spec.denominator.front();
+    return gain * change > 0.0 ? value > spec.most : value < spec.least;
+  });
+}
+
+void Controllers::switch_over(State& state, const SwitchedControllers& switched) const {
+  const auto begin_anew = [&](int k, bool off) {
+    const Item& item = items_[static_cast<std::size_t>(k)];
+    double* memory = state.history.data() + item.memory;
+    // One that is on keeps its output until it acts again.
+    const bool silent = off || is_off(item, state);
+    std::fill(memory + (silent ? ControllerMemory::kValue : ControllerMemory::kError),
+              memory + ControllerMemory::kOff, 0.0);
+    std::fill_n(memory + ControllerMemory::kSize, item.filter.B.size(), 0.0);
+    memory[ControllerMemory::kTime] = kNever;
+    memory[ControllerMemory::kOff] = off ? 1.0 : 0.0;
+    // A sampled one goes on at its next sample.
+    if (const auto& sample = item.spec->sample)
+      memory[ControllerMemory::kCount] =
+          std::max(memory[ControllerMemory::kCount],
+                   std::ceil((state.t - kSameSampleTime * state.dt_last) / *sample));
+    if (silent) set_output(item, memory);
+  };
+  for (const int k : switched.off) begin_anew(k, true);
+  for (const int k : switched.on) begin_anew(k, false);
 }
 
 Controllers::StateSpace Controllers::state_space(const ControllerSpec& spec) {
@@ -102,6 +179,7 @@ double Controllers::next_time(const State& state, double until) const {
   double next = std::numeric_limits<double>::infinity();
   for (const Item& item : items_) {
     const ControllerSpec& spec = *item.spec;
+    if (is_off(item, state)) continue;
     if (spec.sample)
       next = std::min(next, state.history[static_cast<std::size_t>(item.memory)] * *spec.sample);
     else if (spec.setpoint)
@@ -113,6 +191,7 @@ double Controllers::next_time(const State& state, double until) const {
 Controllers::Acted Controllers::act(const Simulation& simulation, State& state) const {
   Acted acted;
   for (const Item& item : items_) {
+    if (is_off(item, state)) continue;
     const double* memory = state.history.data() + item.memory;
     const double count = memory[ControllerMemory::kCount];
     const double same = kSameSampleTime * state.dt_last;
@@ -134,12 +213,18 @@ Controllers::Acted Controllers::act(const Simulation& simulation, State& state) 
 }
 
 /// @eq{controller} @eq{controller-steps}
-bool Controllers::act(const Item& item, double y, const Simulation& simulation, State& state) {
+bool Controllers::act(const Item& item, double y, const Simulation& simulation,
+                      State& state) const {
   const ControllerSpec& spec = *item.spec;
   const StateSpace& filter = item.filter;
   const double y_rate = item.rate ? item.rate->value(simulation) : 0.0;
   const auto target = [&](TimeSide side) {  // a step ends at a break up to rounding
-    return spec.setpoint ? spec.setpoint->rates(beside(state.t, side), side) : TimeRates{};
+    if (!spec.setpoint) return TimeRates{};
+    TimeRates r = spec.setpoint->rates(beside(state.t, side), side);
+    if (side == TimeSide::kBefore && spec.setpoint->controller() >= 0)
+      r.value = value_before(items_[static_cast<std::size_t>(spec.setpoint->controller())], state,
+                             r.value);
+    return r;
   };
   const auto error = [&](const TimeRates& r) {
     return Error{r.value - y, item.rate ? r.rate - y_rate : 0.0};
@@ -156,7 +241,8 @@ bool Controllers::act(const Item& item, double y, const Simulation& simulation, 
            spec.derivative * (spec.filter > 0.0 ? lag : e.rate);
   };
   double slope = 0.0;
-  const bool first = memory[ControllerMemory::kCount] == 0.0;
+  const bool first =
+      memory[ControllerMemory::kCount] == 0.0 || memory[ControllerMemory::kTime] == kNever;
   if (first) {
     lag = after.rate;
   } else {
@@ -170,13 +256,21 @@ bool Controllers::act(const Item& item, double y, const Simulation& simulation, 
     const double made = made_of(before), onward = spec.integral * way;
     // At a limit the integral is held, unless it moves back into the range (anti-windup).
     if ((made > spec.most && onward > 0.0) || (made < spec.least && onward < 0.0)) integral = kept;
-    if (x.size() > 0) {
+    const bool rests = memory[ControllerMemory::kIdle] != 0.0;
+    if (rests || limited(item, state, onward)) integral = kept;
+    if (x.size() > 0 && !rests) {
       const Mat half = 0.5 * h * filter.A, one = Mat::Identity(x.size(), x.size());
       const Vec right = x + half * x + way * filter.B;
       x = (one - half).partialPivLu().solve(right);
     }
-    if (!spec.sample) slope = (made_of(before) - memory[ControllerMemory::kValue]) / h;
+    // Where no step was taken since, at a break of the setpoint, the slope is the last one.
+    const bool moved = h > 0.5 * state.dt_last;
+    if (!spec.sample)
+      slope = moved ? (made_of(before) - memory[ControllerMemory::kValue]) / h
+                    : memory[ControllerMemory::kSlope];
   }
+  memory[ControllerMemory::kBefore] = first ? made_of(after) : made_of(before);
+  memory[ControllerMemory::kIdle] = idle(item, state) ? 1.0 : 0.0;
   memory[ControllerMemory::kCount] += 1.0;
   memory[ControllerMemory::kTime] = state.t;
   memory[ControllerMemory::kValue] = made_of(after);
@@ -190,10 +284,20 @@ bool Controllers::act(const Item& item, double y, const Simulation& simulation, 
          jump_at(state.t, r_before.rate, r_after.rate, sum(r_before.second, r_after.second)) != 0.0;
 }
 
+double Controllers::value_before(const Item& item, const State& state, double otherwise) {
+  const double* memory = state.history.data() + item.memory;
+  if (memory[ControllerMemory::kTime] != state.t) return otherwise;
+  return std::clamp(memory[ControllerMemory::kBefore], item.output->least, item.output->most);
+}
+
 void Controllers::set_output(const Item& item, const double* memory) {
-  item.output->t = memory[ControllerMemory::kTime];
-  item.output->value = memory[ControllerMemory::kValue];
-  item.output->slope = memory[ControllerMemory::kSlope];
+  ControllerOutput& output = *item.output;
+  const bool off = memory[ControllerMemory::kOff] != 0.0;
+  output.t = memory[ControllerMemory::kTime];
+  output.value = memory[ControllerMemory::kValue];
+  output.slope = memory[ControllerMemory::kSlope];
+  output.least = off ? 0.0 : item.spec->least;
+  output.most = off ? 0.0 : item.spec->most;
 }
 
 std::array<double, 3> Controllers::report(int controller, const Simulation& simulation) const {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/simulation/channel_reader.hpp>
+#include <polhode/simulation/event_watch.hpp>
 
 namespace polhode {
 
@@ -43,6 +43,9 @@ class Controllers {
   Acted act(const Simulation& simulation, State& state) const;
   /// Target, measured value and output of a controller at the instant.
   [[nodiscard]] std::array<double, 3> report(int controller, const Simulation& simulation) const;
+  /// Switches controllers at an instant, before act(): the output of those that are off is zero;
+  /// those switched on, also if they are on, begin with integrals and filters of zero.
+  void switch_over(State& state, const SwitchedControllers& switched) const;
   /// Restores the outputs stored in a state.
   void resume(const State& state) const;
 
@@ -59,13 +62,28 @@ class Controllers {
     std::optional<ChannelReader> rate;  ///< If the derivative is used.
     StateSpace filter;
     std::shared_ptr<ControllerOutput> output;
-    int memory = 0;  ///< Offset of its numbers in State::history.
+    int memory = 0;            ///< Offset of its numbers in State::history.
+    std::vector<int> loads{};  ///< Interactions that use the output.
+    std::vector<int> inner{};  ///< Controllers whose setpoint it is.
+    bool always_used = false;  ///< By what cannot be switched off.
   };
+  /// Finds what uses the outputs.
+  void find_users(const Model& model, const SystemMap& map);
+  /// Whether nothing uses the output at present, or all that does is at a limit that a change of
+  /// the output in this direction would exceed: the integral then stops (anti-windup).
+  [[nodiscard]] bool idle(const Item& item, const State& state) const;
+  [[nodiscard]] bool limited(const Item& item, const State& state, double change) const;
   [[nodiscard]] static StateSpace state_space(const ControllerSpec& spec);
   /// @param y  Measured value. @returns whether its output jumps.
-  static bool act(const Item& item, double y, const Simulation& simulation, State& state);
+  bool act(const Item& item, double y, const Simulation& simulation, State& state) const;
   static void set_output(const Item& item, const double* memory);
+  /// Output just before the instant, which is another one where it jumps, if it has acted there.
+  [[nodiscard]] static double value_before(const Item& item, const State& state, double otherwise);
+  [[nodiscard]] static bool is_off(const Item& item, const State& state) {
+    return state.history[static_cast<std::size_t>(item.memory + ControllerMemory::kOff)] != 0.0;
+  }
 
+  const System* system_;
   std::vector<Item> items_;
 };
 

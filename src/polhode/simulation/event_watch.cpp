@@ -39,7 +39,7 @@ EventWatch::EventWatch(const Simulation& simulation, const SystemMap& map)
   for (const EventSpec& event : *events_) {
     Watched w;
     const auto add = [&](const std::vector<std::string>& names, std::vector<int>& interactions,
-                         std::vector<int>& contacts) {
+                         std::vector<int>& contacts, std::vector<int>& controllers) {
       for (const std::string& name : names) {
         if (const auto sides = switched_contact(model, name)) {
           const auto [a, b] = *sides;
@@ -49,12 +49,16 @@ EventWatch::EventWatch(const Simulation& simulation, const SystemMap& map)
                 map.contacts->switch_of(a, b == kEverySide ? contact::kEveryOwner : b));
           continue;
         }
+        if (const int controller = switched_controller(model, name); controller >= 0) {
+          controllers.push_back(controller);
+          continue;
+        }
         const SwitchTarget target = switch_target(model, name);
         interactions.push_back((target.joint ? map.joint : map.load)[at(target.index)]);
       }
     };
-    add(event.on, w.on, w.contacts_on);
-    add(event.off, w.off, w.contacts_off);
+    add(event.on, w.on, w.contacts_on, w.controllers.on);
+    add(event.off, w.off, w.contacts_off, w.controllers.off);
     if (event.when)
       w.channel =
           ChannelReader(simulation, map, event.when->channel, format("events.{}.when", event.name));
@@ -98,12 +102,11 @@ bool EventWatch::watches(const State& state) const {
   return false;
 }
 
-double EventWatch::margin(const Simulation& simulation) const {
-  double first = -std::numeric_limits<double>::infinity();
+std::vector<double> EventWatch::margins(const Simulation& simulation) const {
+  std::vector<double> list(events_->size(), std::numeric_limits<double>::quiet_NaN());
   for (int e = 0; e < static_cast<int>(events_->size()); ++e)
-    if ((*events_)[at(e)].when && ready(simulation.state(), e))
-      first = std::max(first, beyond(simulation, e));
-  return first;
+    if ((*events_)[at(e)].when && ready(simulation.state(), e)) list[at(e)] = beyond(simulation, e);
+  return list;
 }
 
 std::vector<int> EventWatch::due(const Simulation& simulation) const {

@@ -10,6 +10,12 @@ namespace polhode {
 
 class Simulation;
 
+/// Controllers that an event switches on or off.
+struct SwitchedControllers {
+  std::vector<int> on, off;
+  [[nodiscard]] bool empty() const { return on.empty() && off.empty(); }
+};
+
 /// Events of a running model: which are due, and the margins of the conditions of others. Past
 /// events are stored in the State.
 class EventWatch {
@@ -30,13 +36,17 @@ class EventWatch {
     return watched_[at(event)].contacts_off;
   }
 
+  [[nodiscard]] const SwitchedControllers& controllers(int event) const {
+    return watched_[at(event)].controllers;
+  }
+
   /// Next given time of an event [s]; infinity if there is none.
   [[nodiscard]] double next_time(const State& state) const;
   /// Whether a condition may become true in the next step.
   [[nodiscard]] bool watches(const State& state) const;
-  /// Margin of the first of these conditions beyond its level, negative before it: a continuous
-  /// function along the motion, whose zero is the next event.
-  [[nodiscard]] double margin(const Simulation& simulation) const;
+  /// Margin of each event's condition beyond its level, negative before it: a function along the
+  /// motion, whose zero is the event; NaN of events that cannot occur.
+  [[nodiscard]] std::vector<double> margins(const Simulation& simulation) const;
   /// Events at this instant, in the order of the model.
   [[nodiscard]] std::vector<int> due(const Simulation& simulation) const;
   /// Rearms repeated events whose condition no longer holds.
@@ -53,6 +63,7 @@ class EventWatch {
   struct Watched {
     std::vector<int> on, off;
     std::vector<int> contacts_on, contacts_off;
+    SwitchedControllers controllers;
     ChannelReader channel;
     int after = -1;
   };

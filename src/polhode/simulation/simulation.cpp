@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/core/clock.hpp>
 #include <polhode/simulation/finite_functions.hpp>
@@ -82,7 +83,10 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   const std::optional<double> every = s.statics ? std::nullopt : s.model.output.every;
   const bool automatic = !s.model.analysis.step;
   const double wall = wall_clock(), cpu = cpu_clock();
+  double looked = -std::numeric_limits<double>::infinity();
   const auto look = [&] {
+    if (s.state.t == looked) return;  // an event has ended the run where the last step ended
+    looked = s.state.t;
     const double t0 = wall_clock();
     s.at_instant();  // computes the velocity residual for the figures
     s.watch_stretches();

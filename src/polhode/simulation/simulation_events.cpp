@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include <polhode/simulation/first_crossing.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
 #include <polhode/simulation/switch_contacts.hpp>
 
@@ -16,14 +18,27 @@ namespace {
 constexpr double kReach = 0.9e-3;
 /// Safety factor on the slope of a margin between evaluations [-].
 constexpr double kMoreThanSecant = 1.5;
-/// Accuracy of an event: margin as a part of its change over the step, or time as a part of the
-/// step.
-constexpr double kFound = 1e-13;
-constexpr int kMaxLooks = 60;
+/// Accuracy of an event in time, as a part of the step.
+constexpr double kSameInstant = 1e-13;
+/// Shortest steps from the start of a step within which an event is at the start.
+constexpr double kAtTheStart = 2.0;
+
+bool any_reached(const std::vector<double>& margins) {
+  return std::any_of(margins.begin(), margins.end(), [](double m) { return m >= 0.0; });
+}
+
+/// Whether a margin seems to reach zero within kReach of a step after its end. An infinite margin,
+/// of an unknown gap, is not near.
+bool any_near(const std::vector<double>& start, const std::vector<double>& end) {
+  for (std::size_t e = 0; e < end.size(); ++e)
+    if (std::isfinite(start[e]) && std::isfinite(end[e]) &&
+        end[e] + kMoreThanSecant * kReach * (end[e] - start[e]) >= 0.0)
+      return true;
+  return false;
+}
 
 }  // namespace
 
-/// @eq{event-time}
 StepReport Simulation::advance(double t_limit) {
   Impl& s = *impl_;
   if (!s.events && !s.controllers) return s.advance(t_limit);
@@ -36,87 +51,92 @@ StepReport Simulation::advance(double t_limit) {
   }
   if (s.state.ledger.steps == 0 && !let_events_come(report)) return report;
   const EventWatch& events = *s.events;
-  double limit = std::min(t_limit, events.next_time(s.state));
-  if (s.controllers)
-    limit = std::min(limit, s.controllers->next_time(s.state, std::min(limit, s.end())));
-  const bool watches = events.watches(s.state);
-  const Impl::Reached before = s.reached();
-  const double margin = watches ? events.margin(*this) : 0.0;
-  report = s.take(limit);
-  if (!report.accepted) return report;
-  if (watches) s.find_event(*this, before, margin, limit, report);
-  s.settle_step();
-  events.rearm(*this, s.state);
-  if (!let_events_come(report)) {
-    s.go_to(before);
-  } else if (s.controllers) {
-    s.let_act(*this, report);
+  for (;;) {
+    double limit = std::min(t_limit, events.next_time(s.state));
+    if (s.controllers)
+      limit = std::min(limit, s.controllers->next_time(s.state, std::min(limit, s.end())));
+    const Impl::Reached before = s.reached();
+    const bool watches = events.watches(s.state);
+    const std::vector<double> margins = watches ? events.margins(*this) : std::vector<double>{};
+    report = s.take(limit);
+    if (!report.accepted) return report;
+    if (watches) {
+      s.due_at_start = s.find_event(*this, before, margins, limit, report);
+      if (!s.due_at_start.empty()) {
+        s.go_to(before);
+        if (!let_events_come(report)) return report;
+        report = {.accepted = true, .t = s.state.t};
+        if (s.controllers) s.let_act(*this, report);
+        if (report.accepted && !s.stopped()) continue;
+        return report;
+      }
+    }
+    if (report.dt != 0.0) s.settle_step();
+    // One that occurred just before its margin was zero stays spent until a step has passed that.
+    if (report.dt != 0.0) events.rearm(*this, s.state);
+    if (!let_events_come(report)) {
+      s.go_to(before);
+    } else if (s.controllers) {
+      s.let_act(*this, report);
+    }
+    return report;
   }
-  return report;
 }
 
-void Simulation::Impl::find_event(const Simulation& simulation, const Reached& before,
-                                  double margin, double limit, StepReport& report) {
+/// @eq{event-time}
+std::vector<int> Simulation::Impl::find_event(const Simulation& simulation, const Reached& before,
+                                              const std::vector<double>& start, double limit,
+                                              StepReport& report) {
+  if (report.dt == 0.0) return {};  // the limit was reached without a step
+  const double t_0 = before.state.t;
+  std::vector<double> now = events->margins(simulation);
   const auto take_to = [&](double t) {
     go_to(before);
-    StepReport r = take(t);
-    return std::pair(r, r.accepted ? events->margin(simulation) : 0.0);
+    const StepReport r = take(t);
+    if (r.accepted) now = events->margins(simulation);
+    return r;
   };
-  double beyond = events->margin(simulation);
-  if (beyond < 0.0) {
-    // An infinite margin, of an unknown gap, is not near.
-    const double H = state.t - before.state.t, longer = state.t + kReach * H;
-    if (std::isinf(beyond) || std::isinf(margin) ||
-        beyond + kMoreThanSecant * kReach * (beyond - margin) < 0.0 || longer > limit)
-      return;
+  if (!any_reached(now)) {
+    const double longer = state.t + kReach * (state.t - t_0);
+    if (longer > limit || !any_near(start, now)) return {};
     const Reached ordinary = reached();
-    const auto [r, at_end] = take_to(longer);
-    if (!r.accepted || at_end < 0.0) {
+    const StepReport r = take_to(longer);
+    if (!r.accepted || !any_reached(now)) {
       go_to(ordinary);
-      return;
+      return {};
     }
     report = r;
-    beyond = at_end;
   }
-  // Regula falsi with the Illinois modification; the state stays on the side where the condition
-  // holds.
   Reached found = reached();
-  const double t_0 = before.state.t;
-  double low = 0.0, high = state.t - t_0, at_low = margin, at_high = beyond;
-  const bool far = std::isinf(margin) || std::isinf(beyond);
-  const double close = far ? 0.0 : kFound * (beyond - margin), H = high;
-  const double same =
-      std::max(kFound * H, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state.t));
-  int side = 0;
-  for (int k = 0; k < kMaxLooks && beyond > close && high - low > same; ++k) {
-    const double secant = std::isinf(at_low) || std::isinf(at_high)
-                              ? 0.5 * (low + high)
-                              : (low * at_high - high * at_low) / (at_high - at_low);
-    const double x = std::clamp(secant + 0.25 * same, low + 0.25 * same, high - 0.25 * same);
-    const auto [r, m] = take_to(t_0 + x);
+  const Reached whole = found;
+  const StepReport of_whole = report;
+  const double H = state.t - t_0, shortest = shortest_step(before.state);
+  FirstCrossing first(
+      start, now, H,
+      std::max(kSameInstant * H, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state.t)));
+  while (!first.found()) {
+    const double least = kAtTheStart * shortest;
+    if (first.far_side() <= least) break;
+    const StepReport r = take_to(t_0 + std::max(first.next(), least));
     if (!r.accepted) break;
-    const double length = state.t - t_0;
-    if (m >= 0.0) {
-      high = length;
-      at_high = beyond = m;
-      found = reached();
-      report = r;
-      if (side > 0) at_low *= 0.5;
-      side = 1;
-    } else {
-      low = length;
-      at_low = m;
-      if (side < 0) at_high *= 0.5;
-      side = -1;
-    }
+    if (!first.add(state.t - t_0, now)) continue;
+    found = reached();
+    report = r;
   }
-  go_to(found);
+  if (first.far_side() <= kAtTheStart * shortest * (1.0 + kReach)) return first.crossed();
+  // What is nearer to the end of the step than any step is short is there.
+  const bool at_end = whole.state.t - found.state.t < shortest;
+  if (at_end) report = of_whole;
+  go_to(at_end ? whole : found);
+  return {};
 }
 
 bool Simulation::let_events_come(StepReport& report) {
   Impl& s = *impl_;
   const EventWatch& events = *s.events;
-  for (std::vector<int> due = events.due(*this); !due.empty(); due = events.due(*this))
+  std::vector<int> due = std::exchange(s.due_at_start, {});
+  if (due.empty()) due = events.due(*this);
+  for (; !due.empty(); due = events.due(*this))
     for (const int e : due) {
       SwitchReport done;
       const EventSpec& event = events.events()[static_cast<std::size_t>(e)];
@@ -129,6 +149,10 @@ bool Simulation::let_events_come(StepReport& report) {
           report.message = s.cannot_touch(event, overlaps);
           return false;
         }
+      }
+      if (s.controllers && !events.controllers(e).empty()) {
+        s.controllers->switch_over(s.state, events.controllers(e));
+        s.stepper->forces_jump(s.state);
       }
       if (!at_start && (!event.on.empty() || !event.off.empty())) {
         done = s.stepper->switch_over(s.state, events.on(e), events.off(e));

@@ -27,6 +27,7 @@
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
 #include <polhode/stepping/extrapolated_velocities.hpp>
+#include <polhode/stepping/step_lengths.hpp>
 
 namespace polhode {
 
@@ -52,6 +53,7 @@ struct Simulation::Impl {
   ContactStatistics contacts;
   std::unique_ptr<EventWatch> events;        ///< Null if there are none.
   std::unique_ptr<Controllers> controllers;  ///< Likewise.
+  std::vector<int> due_at_start;             ///< Events found nearer than a step is short.
   State state;
   StartReport start_report;
   RunSummary figures;  ///< Times, end and message; other figures are in the state.
@@ -139,7 +141,7 @@ struct Simulation::Impl {
   StepReport take(double t_limit) {
     forget_reports();
     StepReport report = stepper->advance(state, t_limit);
-    if (report.accepted) contacts.see(state);
+    if (report.accepted && report.dt != 0.0) contacts.see(state);
     return report;
   }
   /// Clears the reports of the state that the simulation leaves.
@@ -164,10 +166,19 @@ struct Simulation::Impl {
     stepper->leave();
     forget_reports();
   }
-  /// Returns to the time of an event in the step just taken, if there is one.
-  /// @param before  Start of the step. @param margin  EventWatch::margin() there.
-  void find_event(const Simulation& simulation, const Reached& before, double margin, double limit,
-                  StepReport& report);
+  /// Shortest length of a step, see step_control::shortest_step().
+  [[nodiscard]] double shortest_step(const State& before) const {
+    const StepControl& control = method.control;
+    return step_control::shortest_step(before.t, control.step
+                                                     ? std::min(*control.step, control.horizon)
+                                                     : std::max(before.dt_next, state.dt_next));
+  }
+  /// Returns to the time of the first event in the step just taken, if there is one.
+  /// @param before  Start of the step. @param start  EventWatch::margins() there.
+  /// @returns events nearer to the start than any step is short, which are at the start; the state
+  /// is then that of a trial.
+  std::vector<int> find_event(const Simulation& simulation, const Reached& before,
+                              const std::vector<double>& start, double limit, StepReport& report);
   /// Evaluates the controllers; the report says if one cannot act.
   void let_act(const Simulation& simulation, StepReport& report) {
     const Controllers::Acted acted = controllers->act(simulation, state);
@@ -209,7 +220,7 @@ struct Simulation::Impl {
   StepReport advance(double t_limit) {
     if (!statics) {
       StepReport report = take(t_limit);
-      if (report.accepted) settle_step();
+      if (report.accepted && report.dt != 0.0) settle_step();
       return report;
     }
     const double before = state.t;

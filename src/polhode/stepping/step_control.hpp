@@ -6,8 +6,12 @@ namespace polhode::step_control {
 
 /// Difference of times, as a part of a step, below which they are equal.
 inline constexpr double kSameTime = 1e-9;
-/// Remainder of a fixed step, as a part of it, that is added to the next one.
-inline constexpr double kLeftOver = 1e-6;
+/// Difference of times, relative to them, that is round-off; and length of a phase between breaks,
+/// in shortest steps, below which nothing more of it is left out.
+inline constexpr double kRoundOff = 0x1p-44, kShortPhase = 1e3;
+/// Steps in which the fastest body covers its distance from the origin: for the round-off of its
+/// velocities before it has moved by as much [-].
+inline constexpr double kFarAway = 4096.0;
 /// Relative lengthening of a step that then ends at a requested time [-].
 inline constexpr double kStretch = 1e-3;
 inline constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kMinFactor = 0.3, kMaxFactor = 1.6;

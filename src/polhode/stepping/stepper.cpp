@@ -11,7 +11,9 @@
 #include <polhode/stepping/start.hpp>
 #include <polhode/stepping/step_control.hpp>
 #include <polhode/stepping/step_error.hpp>
+#include <polhode/stepping/step_lengths.hpp>
 #include <polhode/stepping/step_reach.hpp>
+#include <polhode/stepping/step_verdict.hpp>
 #include <polhode/stepping/stepper.hpp>
 #include <polhode/system/time_breaks.hpp>
 
@@ -80,6 +82,15 @@ struct Stepper::Impl {
     return control.max_step > 0.0 ? control.max_step : control.horizon;
   }
 
+  /// Shortest length of a step here: of the usual ones, which are those of the run if that is
+  /// shorter.
+  [[nodiscard]] double shortest_length(const State& state) const {
+    const double usual = !automatic()          ? std::min(*control.step, control.horizon)
+                         : state.dt_next > 0.0 ? state.dt_next
+                                               : first_step(state);
+    return shortest_step(state.t, usual);
+  }
+
   /// Initial length of an automatic step: a small part of the run, and of the fastest rotation.
   [[nodiscard]] double first_step(const State& state) const {
     double omega = 0.0;
@@ -103,24 +114,13 @@ struct Stepper::Impl {
       dt = part_of(std::min(t_limit, at_break) - state.t, sampled(state, dt));
     } else {
       const double H = *control.step;
-      const double steps_done = std::floor(state.t / H + kLeftOver);
+      const double steps_done = std::floor((state.t + shortest_length(state)) / H);
       dt = part_of((steps_done + 1.0) * H - state.t, dt);
       dt = part_of(t_limit - state.t, dt);
     }
     const double way = at_break - state.t;
-    if (way > (1.0 + kStretch) * dt) return dt;
+    if (way > (1.0 + kStretch) * dt || at_break > t_limit) return dt;
     return std::abs(way - dt) <= kSameTime * dt && !looks_at_end() ? dt : way;
-  }
-
-  /// Length of at most dt, or a thousandth more, that divides a short remaining time into equal
-  /// parts. A tiny remainder is thus avoided, in which multipliers of the size of round-off/Δt²
-  /// would leak energy.
-  static double part_of(double way, double dt) {
-    if (way > 2.0 * dt || std::abs(way - dt) <= kSameTime * dt) return dt;
-    const double parts = std::ceil(way / dt - kStretch);
-    const double part = parts > 1.0 ? way / parts : way;
-    // equal to the last bit at any end time
-    return std::abs(part - dt) <= kSameTime * dt ? dt : part;
   }
 
   /// Next break of a function of time; one that falls on the grid is over there.
@@ -171,11 +171,30 @@ struct Stepper::Impl {
     return report;
   }
 
-  void land(State& state, double t) const {
+  /// Passes a break at the time reached, if there is one.
+  void pass(State& state, const TimeBreak& ahead) {
+    const bool stands = stands_at(ahead, state.t);
+    const double t = state.t;
+    if (stands) state.t = ahead.t;  // where a function jumps, though the step ended beside it
+    kinks.pass(state, single.ledger());
     state.t = t;
-    if (automatic()) return;
-    const double H = *control.step, grid = std::round(t / H) * H;
-    if (std::abs(t - grid) < kSameTime * H) state.t = grid;
+    if (stands) pass_break(state, ahead);
+  }
+
+  /// Goes to limits that are nearer than any step is short, without a step.
+  /// @returns whether t_limit is reached.
+  bool skip(State& state, double t_limit) {
+    for (;;) {
+      const TimeBreak ahead = next_break(state);
+      const double limit = std::min(t_limit, landing(ahead));
+      // Between breaks that are near a load may be as large as it is short: only round-off is left.
+      const double least = shortest_length(state), way = limit - state.t;
+      if (way >= least) return false;
+      if (way > kRoundOff * limit && breaks.near(state.t, kShortPhase * least)) return false;
+      state.t = limit;
+      if (stands_at(ahead, state.t)) pass(state, ahead);
+      if (state.t >= t_limit) return true;
+    }
   }
 
   /// Difference by a companion from the same start; nothing if it does not converge.
@@ -273,24 +292,8 @@ struct Stepper::Impl {
     return std::max({least_error, requested_error(dt), kNoiseAllowed * noise(state)});
   }
 
-  /// Verdict of an estimate on a step that converged.
-  struct Verdict {
-    bool fine = true;
-    double factor = 1.0;  ///< Of the length, for the next step or another trial.
-    double error = 0.0;
-    bool noise = false;  ///< Accepted because shorter steps have no smaller error.
-  };
-  /// The last rejected trial with an estimate, for comparison.
-  struct Refused {
-    double H = 0.0, error = 0.0;
-    int count = 0;
-
-    /// Whether a shorter step has hardly a smaller error, which then is not the step's own.
-    [[nodiscard]] bool leaves_noise(double length, double now) const {
-      return H > 0.0 && now > error * std::pow(length / H, kFalls);
-    }
-  };
-
+  using Verdict = StepVerdict;
+  using Refused = RefusedStep;
   Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
   /// Verdict on a step in which a stop is active. Its time within the step is arbitrary, which
   /// hardly matters if the step is short enough.
@@ -380,7 +383,9 @@ void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int i
 }
 
 StepReport Stepper::Impl::advance(State& state, double t_limit) {
+  if (skip(state, t_limit)) return {.accepted = true, .t = state.t};
   StepReport report;
+  const double start = state.t;
   const TimeBreak ahead = next_break(state);
   const double limit = std::min(t_limit, landing(ahead));
   if (automatic() && (state.dt_next <= 0.0 || state.easy_steps == kFindAnew)) {
@@ -410,7 +415,8 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       report.accepted = true;
       const double t = composed() ? before.t + H : state.t;
       const bool at_limit = std::abs(t - limit) < kSameTime * std::abs(H);
-      land(state, at_limit ? limit : t);
+      state.t = at_limit ? limit : t;
+      if (!automatic()) state.t = on_grid(state.t, *control.step, start);
       report.t = state.t;
       report.dt = H;
       // A step cut short by a limit does not shorten the next one.
@@ -418,8 +424,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       accept(state, H, verdict, report.newton.iterations, kept);
       if (report.newton.hard) record_hard(state);
       record(state, H, verdict.error);
-      kinks.pass(state, single.ledger());
-      if (stands_at(ahead, state.t)) pass_break(state, ahead);
+      pass(state, ahead);
       if (impact && automatic()) state.past_count = 0;
       ++state.ledger.steps;
       single.ledger().close_step(state);

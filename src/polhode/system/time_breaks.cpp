@@ -15,8 +15,8 @@ constexpr double kWindow = 4.0;
 constexpr int kSamples = 16;
 /// Curvature effect, as a part of the function's size, for which no step is shortened.
 constexpr double kNothing = 1e-12;
-/// Part of the run below which steps are not shortened for sampling.
-constexpr double kMinPart = 1e-7;
+/// Part of the run below which steps are not shortened for sampling: the shortest automatic step.
+constexpr double kMinPart = 1e-9;
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <polhode/system/system.hpp>
@@ -21,6 +22,10 @@ class TimeBreaks {
   /// First break after t, up to the end of the run or beyond if t is; of simultaneous breaks the
   /// one with the lowest derivative.
   [[nodiscard]] TimeBreak next(double t);
+  /// Whether there is a break within a distance of t, before or after it.
+  [[nodiscard]] bool near(double t, double distance) {
+    return next(std::max(0.0, t - distance)).t <= t + distance;
+  }
 
   /// Length of at most h from t, without breaks, over which every function is sampled well: the
   /// effect of the second derivative is below a third of the change over four such lengths, or

@@ -4,6 +4,6 @@
 
 namespace polhode::test::events_page_tests {
 
-TEST(EventsPage, EveryExampleRuns) { EXPECT_EQ(run_page_examples("docs/reference/events.md"), 6); }
+TEST(EventsPage, EveryExampleRuns) { EXPECT_EQ(run_page_examples("docs/reference/events.md"), 7); }
 
 }  // namespace polhode::test::events_page_tests

@@ -52,7 +52,8 @@ void read_targets(ReadContext& context, Section& section, const char* key,
   for (const std::string& name : *list) {
     try {
       const auto sides = switched_contact(context.model, name);
-      if (!sides) (void)switch_target(context.model, name);
+      if (!sides && switched_controller(context.model, name) < 0)
+        (void)switch_target(context.model, name);
       if (const auto surface = sides ? surface_met(context.model, *sides) : std::nullopt) {
         section.fault(key,
                       format("{} touches {}, a contact that cannot be switched", quote(name),

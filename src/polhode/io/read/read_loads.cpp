@@ -88,12 +88,14 @@ class LoadReader {
         break;
       case LoadPlace::joint:
         load_.joint = read_joint("joint", section_.find("joint"), &load_.a, &load_.b);
+        read_stays();
         if (table_.find("coordinate"))
           if (const auto coordinate = section_.choice("coordinate")) load_.coordinate = *coordinate;
         check_angle(kind);
         break;
       case LoadPlace::joints:
         read_joint_pair();
+        read_stays();
         break;
       case LoadPlace::frames:
         read_bodies();
@@ -136,6 +138,10 @@ class LoadReader {
     if (!kind.can_follow) return;
     load_.follower = section_.boolean("follower").value_or(true);
     if (const auto keeps = section_.choice("keeps")) load_.keeps = *keeps;
+  }
+
+  void read_stays() {
+    if (section_.boolean("stays").value_or(false)) load_.words["stays"] = "true";
   }
 
   void read_bodies() {

@@ -10,9 +10,9 @@ using enum FieldKind;
 const FieldTable& event_fields() {
   static const FieldTable table{
       "event",
-      "Switches joints, loads and contacts off and on, at a time or when a channel crosses a "
-      "value. An event at time 0 sets the initial state. Positions are continuous; velocities, "
-      "too, unless a joint closes or a drive begins.",
+      "Switches joints, loads, contacts and controllers off and on, at a time or when a channel "
+      "crosses a value. An event at time 0 sets the initial state. Positions are continuous; "
+      "velocities, too, unless a joint closes or a drive begins.",
       {
           {.name = "at",
            .kind = kNumber,
@@ -29,9 +29,11 @@ const FieldTable& event_fields() {
            .standard = "it may occur from the start"},
           {.name = "off",
            .kind = kNames,
-           .meaning = "Names to switch off: joints, loads, pairs and sensors of contacts, and "
-                      "bodies (all their contacts)."},
-          {.name = "on", .kind = kNames, .meaning = "Names to switch on."},
+           .meaning = "Names to switch off: joints, loads, pairs and sensors of contacts, "
+                      "bodies (all their contacts), and controllers. Loads in a joint go with it."},
+          {.name = "on",
+           .kind = kNames,
+           .meaning = "Names to switch on. A controller begins anew, also if it is on."},
           {.name = "repeat",
            .kind = kBoolean,
            .meaning =

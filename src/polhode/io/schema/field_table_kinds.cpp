@@ -174,6 +174,10 @@ const Field kLoadJoint{
     .name = "joint", .kind = kJoint, .meaning = "The joint it acts in.", .required = true};
 const Field kLoadJoints{
     .name = "joints", .kind = kNames, .meaning = "[first joint, second joint]", .required = true};
+const Field kStays{.name = "stays",
+                   .kind = kBoolean,
+                   .meaning = "It acts while its joint is switched off or broken, too.",
+                   .standard = "false"};
 const Field kLoadFrameAt{.name = "at",
                          .kind = kVector,
                          .dimension = kLength,
@@ -215,6 +219,7 @@ KindTable load_table(const LoadKind& kind) {
       break;
     case LoadPlace::joint:
       fields.push_back(kLoadJoint);
+      fields.push_back(kStays);
       break;
     case LoadPlace::joints:
       fields.push_back(kLoadJoints);
@@ -222,6 +227,7 @@ KindTable load_table(const LoadKind& kind) {
                         .kind = kNames,
                         .meaning = "The free coordinate of each: x, y, z, rx, ry or rz.",
                         .standard = "the only one of each"});
+      fields.push_back(kStays);
       break;
     case LoadPlace::frames:
       fields.insert(fields.end(), {kLoadBodies, kLoadFrameAt, kLoadPointsBody, kAxis, kXAxis});

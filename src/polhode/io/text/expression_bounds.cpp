@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bounds of an expression over a span of time: interval arithmetic on its value and first two
 // derivatives, and on operations with branches.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -28,6 +29,9 @@ struct Branches {
     open = open || !sure;
   }
 };
+
+/// Distance from a break, in differences of times that are one, beyond which its branch is unique.
+constexpr double kEdges = 4.0;
 
 Interval square(const Interval& x) { return power(x, 2.0); }
 
@@ -389,10 +393,14 @@ TimeBreak Expression::next_break(double t, double until) const {
 }
 
 TimeBounds Expression::bounds(double from, double to) const {
-  // A break may lie at either end, where both branches are possible.
-  const double edge = 1e-3 * (to - from);
+  // A break may lie at either end, where both branches are possible: it is located to round-off.
+  const double most = 1e-3 * (to - from);
+  const auto edge = [&](double t, TimeSide side) {
+    return t + std::clamp(kEdges * (beside(t, side) - t), -most, most);
+  };
   Branches branches;
-  const Jet f = run(program_, Interval(from + edge, to - edge), branches);
+  const Jet f =
+      run(program_, Interval(edge(from, TimeSide::kAfter), edge(to, TimeSide::kBefore)), branches);
   return {f.v.size(), f.e.size()};
 }
 
