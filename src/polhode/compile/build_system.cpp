@@ -20,6 +20,7 @@
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/gear_geometry.hpp>
 #include <polhode/model/switched_contacts.hpp>
+#include <polhode/model/velocity_jumps.hpp>
 
 namespace polhode {
 
@@ -163,6 +164,7 @@ class Builder {
     if (joint.friction || joint.limits || joint.angle_limits)
       item.set_resistance(joint_resistance(model_, joint));
     if (joint.motion) item.set_motion(*joint.motion);
+    if (velocities_may_jump(model_)) item.record_impulses();
     if (!joint.enforcement) return;
     try {
       item.set_enforcement(*joint.enforcement, stiffest_augmented());

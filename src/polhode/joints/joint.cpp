@@ -250,6 +250,11 @@ double Joint::drive_work(const PairStep& step) const {
   return motion_ ? step.history[angles()] : 0.0;
 }
 
+Reaction Joint::impulses(const PairStep& step) const {
+  const double* sums = step.history + record();
+  return {Vec3(sums[0], sums[1], sums[2]), Vec3(sums[3], sums[4], sums[5])};
+}
+
 Vec6 Joint::residual(const Configuration& q) const {
   Vec6 g = Vec6::Zero();
   parts_.for_each([&](const auto& part, int row) { part.residual(q, g.data() + row); });
@@ -383,9 +388,19 @@ void Joint::initialize(const PairStep& step, double* history) const {
   });
   if (resistance_) resistance_->initialize(history + angles());
   if (motion_) history[angles()] = 0.0;
+  if (records_) std::fill_n(history + record(), kRecordSize, 0.0);
 }
 
 void Joint::commit(const PairStep& step, double* history) const {
+  if (records_) {
+    StepContext values_only = step.context;
+    values_only.tangents = false;
+    PairTerms t;
+    t.set_zero();
+    evaluate({step.a, step.b, values_only, step.lambda, step.history}, t);
+    const double dt = step.context.dt;
+    add_impulse(impulse_sum(), step, dt * t.wrench_a, dt * t.wrench_b, history + record());
+  }
   if (resistance_)
     with_view(step, [&](const Resistance::View& v) { resistance_->commit(v, history + angles()); });
   if (motion_) {

@@ -59,6 +59,13 @@ class Joint : public InteractionItem {
   /// @throws InputError if the joint is a distance, or has friction or stops.
   void set_motion(const FrameMotion& motion);
   [[nodiscard]] bool frame_moves() const { return motion_ != nullptr; }
+  /// Sums the impulses of its wrench over the run, before the system is finished.
+  void record_impulses() { records_ = true; }
+  [[nodiscard]] bool records_impulses() const { return records_; }
+  /// Impulses since the start of the whole wrench of a on b about the world's origin, with
+  /// friction, stops and velocity jumps [N s, N m s]. @param step  With the current history; the
+  /// joint must record them.
+  [[nodiscard]] Reaction impulses(const PairStep& step) const;
   /// Work of the prescribed motion since the start [J]. @param step  With the current history.
   [[nodiscard]] double drive_work(const PairStep& step) const;
   /// Power of the prescribed motion at an instant [W].
@@ -73,8 +80,8 @@ class Joint : public InteractionItem {
 
   // Functions of an interaction item.
   [[nodiscard]] int rows() const { return rows_; }
-  [[nodiscard]] int history_size() const { return anchor() + (anchors() ? kAnchorSize : 0); }
-  [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_; }
+  [[nodiscard]] int history_size() const { return record() + (records_ ? kRecordSize : 0); }
+  [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_ && !records_; }
   [[nodiscard]] bool conservative() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
   [[nodiscard]] bool works() const { return resistance_ != nullptr || penalised(); }
@@ -92,6 +99,11 @@ class Joint : public InteractionItem {
   [[nodiscard]] int time_order() const { return 0; }
   [[nodiscard]] bool prescribes() const { return motion_ != nullptr; }
   void prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const;
+  [[nodiscard]] int work_entry() const { return motion_ ? angles() : -1; }
+  [[nodiscard]] ImpulseSum impulse_sum() const {
+    return !records_ ? ImpulseSum::none : reversed_ ? ImpulseSum::on_a : ImpulseSum::on_b;
+  }
+  [[nodiscard]] int impulse_entry() const { return records_ ? record() : -1; }
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
   void commit_off(const PairStep& step, double* history) const { count_turns(step, history); }
@@ -142,6 +154,9 @@ class Joint : public InteractionItem {
   [[nodiscard]] int anchor() const {
     return angles() + (resistance_ ? resistance_->memory_size() : 0) + (motion_ ? 1 : 0);
   }
+  /// Offset of the impulses in the history.
+  static constexpr int kRecordSize = 6;
+  [[nodiscard]] int record() const { return anchor() + (anchors() ? kAnchorSize : 0); }
   /// Frames valid in this step. @param own  Storage for them.
   [[nodiscard]] const JointFrames& held_frames(const PairStep& step, JointFrames& own) const;
   void count_turns(const PairStep& step, double* history) const;
@@ -178,7 +193,7 @@ class Joint : public InteractionItem {
   JointParts parts_;
   int rows_ = 0, shift_ = 0;
   RodKind rod_ = RodKind::none;
-  bool reversed_ = false;
+  bool reversed_ = false, records_ = false;
   JointFrames user_frames_;  ///< As frames_ before any reversal.
   std::string type_;
   std::shared_ptr<const Resistance> resistance_;

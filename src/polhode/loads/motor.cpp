@@ -108,21 +108,24 @@ std::vector<double> Motor::report(const PairStep& step) const {
   const double force = rows() > 0 ? step.lambda[0] : effort(step);
   const double rate = coordinate_rate_at_n1(coordinate_, step.a, step.b);
   return numbers(on_b(coordinate_, coordinate(step), force),
-                 {at_n1(step), rate, force * rate, step.history[kWork]});
+                 {at_n1(step), rate, force * rate, step.history[kWork], step.history[kImpulse]});
 }
 
 void Motor::initialize(const PairStep& step, double* history) const {
   history[kCoordinate] = history[kTarget] = at_n1(step);
-  history[kWork] = 0.0;
+  history[kWork] = history[kImpulse] = 0.0;
   history[kStarted] = 1.0;
 }
 
 void Motor::commit(const PairStep& step, double* history) const {
-  const double work = work_of_step(step), at = at_n1(step);
+  const double at = at_n1(step);
   const double target = drive_ == Drive::speed ? this->target(step) : at;
+  const double force = rows() > 0 ? step.lambda[0] : effort(step);
+  const double work = rows() > 0 ? work_of_step(step) : force * (at - step.history[kCoordinate]);
   history[kCoordinate] = at;
   history[kTarget] = target;
   history[kWork] += work;
+  history[kImpulse] += step.context.dt * force;
 }
 
 void Motor::commit_off(const PairStep& step, double* history) const {

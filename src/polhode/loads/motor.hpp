@@ -32,11 +32,16 @@ class Motor : public InteractionItem {
   [[nodiscard]] int time_order() const { return static_cast<int>(drive_); }
   [[nodiscard]] bool prescribes() const { return rows() > 0; }
   void prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const;
+  [[nodiscard]] int work_entry() const { return rows() > 0 ? kWork : -1; }
+  [[nodiscard]] ImpulseSum impulse_sum() const {
+    return rows() > 0 ? ImpulseSum::of_row : ImpulseSum::none;
+  }
+  [[nodiscard]] int impulse_entry() const { return kImpulse; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] or moment [N m] on b, coordinate with counted turns, its rate,
-  /// power [W] and work since the start [J].
+  /// power [W], work [J] and impulse along the coordinate [N s or N m s] since the start.
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
@@ -44,9 +49,9 @@ class Motor : public InteractionItem {
   void switch_on(const PairStep& step, double* history) const { commit_off(step, history); }
 
  private:
-  /// Layout of the history: coordinate and prescribed value at t_n, work since the start, and 1
-  /// once these are known.
-  enum History : int { kCoordinate, kTarget, kWork, kStarted, kHistory };
+  /// Layout of the history: coordinate and prescribed value at t_n, work and impulse since the
+  /// start, and 1 once these are known.
+  enum History : int { kCoordinate, kTarget, kWork, kImpulse, kStarted, kHistory };
 
   [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;
   [[nodiscard]] double at_n1(const PairStep& step) const;

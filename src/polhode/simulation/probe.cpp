@@ -176,6 +176,7 @@ std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simula
     row.insert(row.end(), joint.stops.begin(), joint.stops.end());
     row.insert(row.end(), joint.power.begin(), joint.power.end());
     row.insert(row.end(), joint.work.begin(), joint.work.end());
+    for (const Vec3& impulse : joint.impulses) extend(row, impulse);
   }
   return row;
 }

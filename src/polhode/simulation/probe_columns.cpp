@@ -8,6 +8,7 @@
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/model/velocity_jumps.hpp>
 #include <polhode/simulation/body_columns.hpp>
 #include <polhode/simulation/probe_columns.hpp>
 
@@ -59,6 +60,9 @@ std::vector<std::string> joint_header(const Model& model, const JointSpec& spec)
   if (spec.friction || spec.limits || spec.angle_limits)
     extend_by_resistance(header, joint_resistance(model, spec), names);
   if (spec.motion) header.insert(header.end(), {"power [W]", "work [J]"});
+  if (!velocities_may_jump(model)) return header;
+  append(header, vector_header("impulse ", "N s"));
+  append(header, vector_header("angular impulse ", "N m s"));
   return header;
 }
 

@@ -56,6 +56,10 @@ struct JointReport {
   bool slips = false;
   /// Drive of a joint whose frame moves as prescribed: power [W] and work since the start [J].
   std::vector<double> power, work;
+  /// Impulses since the start of the whole wrench of a on b about the world's origin, with
+  /// friction, stops and velocity jumps [N s, N m s]; in models whose velocities may jump
+  /// (model/velocity_jumps.hpp), else none.
+  std::vector<Vec3> impulses;
 };
 
 /// Final figures of a run; `run --json` prints them under these names.

@@ -59,6 +59,10 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
     report.power = {item.drive_power(step)};
     report.work = {item.drive_work(step)};
   }
+  if (item.records_impulses()) {
+    const Reaction sums = item.impulses(step);
+    report.impulses = {sums.force, sums.moment};
+  }
   if (!item.resistance()) return report;
   const ResistanceReport resistance = item.resistance_report(step);
   report.friction.assign(resistance.friction.begin(),
@@ -81,12 +85,14 @@ std::vector<double> Simulation::load(int load) const {
   const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   const LoadKind& kind = load_kind(model().loads[load].type);
   std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
-  if (!system.is_off(impl_->state, impl_->map.load[load])) return report;
-  // Interactions that are switched off neither act nor store energy.
+  const bool off = system.is_off(impl_->state, impl_->map.load[load]);
+  if (!off && !impl_->statics) return report;
+  // Interactions that are switched off neither act nor store energy; statics has no time.
   auto at = report.begin();
   for (const LoadChannel& channel : kind.channels) {
-    if (channel.unit == "N" || channel.unit == "N m" || channel.unit == "W" ||
-        channel.name == "energy")
+    const bool acts = channel.unit == "N" || channel.unit == "N m" || channel.unit == "W" ||
+                      channel.name == "energy";
+    if ((off && acts) || (impl_->statics && channel.name == "impulse"))
       std::fill_n(at, channel.size, 0.0);
     at += channel.size;
   }

@@ -3,13 +3,14 @@
 
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/stepping/drive_kinks.hpp>
+#include <polhode/stepping/velocity_jump.hpp>
 
 namespace polhode {
 
 void DriveKinks::pass(State& state, EnergyLedger& ledger) {
   if (!find(state)) return;
   const BodySums sums = ledger.sums(state);
-  settle(state);
+  settle(state);  // its work is the change of energy, with that of nodes
   ledger.add_driven_jump(state, sums);
 }
 
@@ -48,8 +49,10 @@ void DriveKinks::settle(State& state) {
   if (!solver_) solver_ = std::make_unique<InstantSolver>(*system_);
   std::vector<Vec6> bodies;
   std::vector<double> nodes;
-  if (!solver_->jumps_by_kinks(state, given_, rows_, bodies, nodes)) return;
+  VelocityJump jump{.rows = {}, .more = {}, .rate = VelocityJump::Rate::mean};
+  if (!solver_->jumps_by_kinks(state, given_, rows_, bodies, nodes, jump.rows)) return;
   add_jumps(*system_, bodies, nodes, state);
+  take_jump(*system_, state, jump);
   for (const PrescribedComponent& p : system_->nodes().prescribed())
     state.node_a[3 * static_cast<std::size_t>(p.node) + p.component] =
         p.displacement->rates(state.t, TimeSide::kAfter).second;

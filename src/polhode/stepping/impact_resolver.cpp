@@ -55,6 +55,7 @@ ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
 
 void ImpactResolver::find(const State& state, const Trial& trial) {
   rows_.clear();
+  stops_.clear();
   surfaces_.clear();
   contacts_ = nullptr;
   dt_ = trial.context.dt;
@@ -78,6 +79,7 @@ void ImpactResolver::find(const State& state, const Trial& trial) {
     const PairView view = pair_view(*system_, state, trial, ref);
     system_->group(ref.group).impacts(ref.item, view.step(), impacts);
     for (const Impact& impact : impacts) rows_.push_back({{ref.a, ref.b}, impact, {}});
+    stops_.resize(rows_.size(), i);
   }
   of_joints_ = before_contacts_ = rows_.size();
 }
@@ -119,15 +121,20 @@ Work ImpactResolver::settle(State& state) {
   numbers_.resize(rows_.size() - before_contacts_);
   std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(before_contacts_));
   std::vector<Vec6> before;
-  if (contacts_)
-    for (int body = 0; body < system_->body_count(); ++body)
-      before.push_back(velocity(state, body));
+  for (int body = 0; body < system_->body_count(); ++body) before.push_back(velocity(state, body));
+  const std::vector<double> nodes_before = state.node_v;
+  pressed_.assign(before.size(), Vec6::Zero());
+  pressed_nodes_.clear();
+  pulls_ = false;
   for (PairImpact& row : rows_)
     if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
   settle_from(state, 0);
   tell_surfaces(state);
   const Work work = turn_surfaces(state);
-  if (!contacts_) return work;
+  if (!contacts_) {
+    record(state, before, nodes_before);
+    return work;
+  }
   for (int round = 0; round < kMaxCarried; ++round) {
     const std::size_t first = rows_.size();
     press_on(state, before);
@@ -137,6 +144,7 @@ Work ImpactResolver::settle(State& state) {
   std::vector<ResolvedImpact> of_contacts;
   for (int k : numbers_) of_contacts.push_back(k < 0 ? ResolvedImpact{} : settled_[k]);
   contacts_->settled(of_contacts);
+  record(state, before, nodes_before);
   return work;
 }
 
@@ -204,6 +212,7 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
     if (!solver_) solver_ = std::make_unique<InstantSolver>(*system_);
     if (!solver_->take_impulses(state)) return;
     to_admissible = solver_->jumps_to_admissible(state);
+    pulls_ = true;
   }
   const auto number = [&](const Island& island) {
     for (std::size_t i = 0; i < island.bodies.size(); ++i)
@@ -392,7 +401,16 @@ void ImpactResolver::settle(State& state, const Island& island, std::vector<Row>
                       1.0);
   std::vector<Vec6> jumps(island.bodies.size());
   for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] = part * (v[i] - start[i]);
-  if (!island.nodes.empty()) solver_->press_nodes(on_nodes(island, rows, part));
+  for (const Row& row : rows)
+    for (const auto& [place, J] : row.on)
+      if (static_cast<std::size_t>(place) < island.bodies.size())
+        pressed_[island.bodies[static_cast<std::size_t>(place)]] += part * row.impulse * J;
+  if (!island.nodes.empty()) {
+    const std::vector<double> now = on_nodes(island, rows, part);
+    solver_->press_nodes(now);
+    pressed_nodes_.resize(now.size(), 0.0);
+    for (std::size_t k = 0; k < now.size(); ++k) pressed_nodes_[k] += now[k];
+  }
   const double more = jump(state, island, jumps);
   if (!island.nodes.empty()) solver_->press_nodes({});
   for (std::size_t i = 0; i < rows.size(); ++i) {

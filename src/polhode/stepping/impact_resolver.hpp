@@ -31,6 +31,8 @@ class ImpactResolver {
   /// Changes the velocities of the state, which has moved to t_{n+1}.
   /// @returns the change of the energy stored by surfaces, and their dissipation.
   Work settle(State& state);
+  /// Work of drives in the impacts just settled [J].
+  [[nodiscard]] double drive_work() const { return drive_work_; }
 
  private:
   /// Rows that share bodies, directly or through joints and solids.
@@ -85,6 +87,10 @@ class ImpactResolver {
   void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
   [[nodiscard]] bool lands_flat(const Island& island, const std::vector<Row>& rows) const;
   [[nodiscard]] bool follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) const;
+  /// Adds the impulses of rows and stops since these velocities to the sums of joints and drives.
+  void record(State& state, std::span<const Vec6> bodies, std::span<const double> nodes);
+  /// Work of prescribed nodes. @param before  Velocities before the impacts.
+  [[nodiscard]] double work_of_nodes(const State& state, std::span<const double> before) const;
   /// @returns the energy loss of solids' nodes beyond that given by their bodies' velocities [J].
   double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
   /// Impulses of rows on free nodes, 3 each.
@@ -108,6 +114,11 @@ class ImpactResolver {
   std::vector<int> jumped_;              ///< Bodies of the islands so far, ascending.
   std::vector<PairImpact> resting_;      ///< Their resting contacts.
   std::vector<ResolvedImpact> settled_;  ///< Of the rows.
+  std::vector<int> stops_;               ///< Interactions of the rows of joints.
+  std::vector<Vec6> pressed_;            ///< By body: impulses of the rows.
+  std::vector<double> pressed_nodes_;    ///< On free nodes, three each; empty: none.
+  bool pulls_ = false;                   ///< Rows of tied bodies have been settled.
+  double drive_work_ = 0.0;              ///< Of the last impacts [J].
   std::vector<int> numbers_;  ///< Rows of contacts, in the order of the contacts' list; −1: none.
 };
 

@@ -82,15 +82,23 @@ class InstantSolver {
   [[nodiscard]] std::vector<Vec6> jumps(std::span<const Vec6> impulses);
   /// Smallest change that takes the velocities onto G v = 0.
   [[nodiscard]] std::vector<Vec6> jumps_to_admissible(const State& state);
+  /// Impulses of the rows in given jumps: Gᵀ Λ = M Δv − impulses, the smallest Λ where rows are
+  /// redundant. After take_impulses().
+  /// @param impulses  Applied to the bodies; those on free nodes by press_nodes().
+  /// @param jumps  Of the bodies (linear, angular), world.
+  /// @returns by row [N s or N m s]; empty if they cannot be computed.
+  [[nodiscard]] std::vector<double> row_impulses(std::span<const Vec6> impulses,
+                                                 std::span<const Vec6> jumps);
   /// Jumps of all velocities at this instant for given jumps of drives.
   /// @param given  Of prescribed components, three per node, zero elsewhere [m/s]; may be empty.
   /// @param rows  Of G v, by row; may be empty.
   /// @param bodies  Out: by body (linear, angular), world.
   /// @param nodes  Out: three per node, including the given ones [m/s].
+  /// @param impulses  Out: of all rows [N s or N m s].
   /// @returns false if a matrix is singular.
   [[nodiscard]] bool jumps_by_kinks(const State& state, std::span<const double> given,
                                     std::span<const double> rows, std::vector<Vec6>& bodies,
-                                    std::vector<double>& nodes);
+                                    std::vector<double>& nodes, std::vector<double>& impulses);
   /// Smallest mass-weighted jumps of all velocities at this instant that bring some rows onto G v =
   /// ċ, while others keep their G v.
   /// @param rows  By row: 1 for those.

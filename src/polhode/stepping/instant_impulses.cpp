@@ -24,14 +24,20 @@ void InstantSolver::press_nodes(std::span<const double> impulses) {
 }
 
 std::vector<Vec6> InstantSolver::jumps(std::span<const Vec6> impulses) {
+  impl_->press(impulses);
+  return impl_->solution_by_body();
+}
+
+/// @eq{jump-work}
+std::vector<double> InstantSolver::row_impulses(std::span<const Vec6> impulses,
+                                                std::span<const Vec6> jumps) {
   Impl& s = *impl_;
-  const double per_mass = 1.0 / s.system.mean_mass();
-  s.rhs.setZero();
-  for (std::size_t b = 0; b < impulses.size(); ++b)
-    s.rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) = per_mass * impulses[b];
-  for (std::size_t b = 0; b < s.of_nodes.size(); ++b)
-    s.rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) += s.of_nodes[b];
-  return s.solution_by_body();
+  s.press(impulses);
+  Vec moved(6 * s.system.body_count());
+  for (int b = 0; b < s.system.body_count(); ++b) moved.segment<6>(6 * b) = jumps[b];
+  s.rows_times(moved, s.rhs.tail(s.system.rows()));
+  if (!s.solve_factored().solved) return {};
+  return s.solved_rows();
 }
 
 std::vector<Vec6> InstantSolver::jumps_to_admissible(const State& state) {
@@ -51,7 +57,7 @@ std::vector<Vec6> InstantSolver::jumps_to_admissible(const State& state) {
 /// @eq{prescribed-kink}
 bool InstantSolver::jumps_by_kinks(const State& state, std::span<const double> given,
                                    std::span<const double> rows, std::vector<Vec6>& bodies,
-                                   std::vector<double>& nodes) {
+                                   std::vector<double>& nodes, std::vector<double>& impulses) {
   Impl& s = *impl_;
   s.take(state);
   s.put_masses_and_rows(state);
@@ -60,6 +66,7 @@ bool InstantSolver::jumps_by_kinks(const State& state, std::span<const double> g
     s.rhs[6 * s.system.body_count() + static_cast<Eigen::Index>(k)] = rows[k];
   if (!s.add_node_masses(state, given) || !s.factor(state)) return false;
   bodies = s.solution_by_body();
+  impulses = s.solved_rows();
   nodes = node_jumps(bodies);
   return true;
 }
@@ -91,13 +98,10 @@ std::optional<double> InstantSolver::jumps_onto(const State& state, std::span<co
   if (!s.solve_factored().solved) return std::nullopt;
   bodies.assign(static_cast<std::size_t>(s.system.body_count()), Vec6::Zero());
   for (int b = 0; b < s.system.body_count(); ++b) bodies[b] = s.x.segment<6>(6 * b);
-  impulses.assign(rows.size(), 0.0);
+  impulses = s.solved_rows();
   double energy = 0.0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    impulses[k] = s.system.mean_mass() * s.x[first + row];
-    energy += 0.5 * impulses[k] * jumps[row];
-  }
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    energy += 0.5 * impulses[k] * jumps[static_cast<Eigen::Index>(k)];
   nodes = node_jumps(bodies);
   return energy;
 }

@@ -271,6 +271,20 @@ struct InstantSolver::Impl {
     }
     return outcome;
   }
+  /// Sets the right-hand side to impulses on bodies and free nodes; rows to zero.
+  void press(std::span<const Vec6> impulses) {
+    const double per_mass = 1.0 / system.mean_mass();
+    rhs.setZero();
+    for (std::size_t b = 0; b < impulses.size(); ++b)
+      rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) = per_mass * impulses[b];
+    for (std::size_t b = 0; b < of_nodes.size(); ++b)
+      rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) += of_nodes[b];
+  }
+  /// Multipliers of the solution, by row.
+  [[nodiscard]] std::vector<double> solved_rows() const {
+    const Vec rows = system.mean_mass() * x.tail(system.rows());
+    return {rows.begin(), rows.end()};
+  }
   /// Solution for the bodies; zero if it cannot be computed.
   std::vector<Vec6> solution_by_body() {
     std::vector<Vec6> by_body(static_cast<std::size_t>(system.body_count()), Vec6::Zero());

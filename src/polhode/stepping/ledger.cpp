@@ -172,9 +172,10 @@ void EnergyLedger::add(State& state, const Work& work) {
   state.ledger.put_in.add(work.put_in);
 }
 
-void EnergyLedger::add_jump(State& state, const BodySums& before) {
+void EnergyLedger::add_jump(State& state, const BodySums& before, double work) {
   const BodySums after = sums(state);
-  state.ledger.dissipated.add(before.kinetic - after.kinetic);
+  state.ledger.put_in.add(work);
+  state.ledger.dissipated.add(work + before.kinetic - after.kinetic);
   add_impulses(state, before, after);
 }
 

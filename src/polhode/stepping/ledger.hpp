@@ -33,8 +33,9 @@ class EnergyLedger {
   /// Adds the work of the engine's own forces over the step, between before_commit() and
   /// after_commit().
   void add(State& state, const Work& work);
-  /// Adds a velocity jump since `before`: its energy loss, and the impulse on fixed objects.
-  void add_jump(State& state, const BodySums& before);
+  /// Adds a velocity jump since `before`: the work of drives in it, the loss of energy, and the
+  /// impulse on fixed objects. @eq{jump-work}
+  void add_jump(State& state, const BodySums& before, double work);
   /// Adds a jump by a prescribed motion: the energy gain is its work.
   void add_driven_jump(State& state, const BodySums& before);
   /// Adds a switch of interactions. Energy lost by impulses is dissipated, a remaining gain is work

@@ -160,6 +160,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.past_time[state.past_next] = state.t + 0.5 * dt;
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
+  state.t += dt;  // drives act in impacts with their velocity at t_{n+1}
   impacts_.find_turns(state);
   if (BodyContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
     ledger_.add(state, impacts_.find(state, *contacts));
@@ -169,10 +170,9 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   if (jumped_) {
     const BodySums before = ledger_.sums(state);
     const Work work = impacts_.settle(state);
-    ledger_.add_jump(state, before);
+    ledger_.add_jump(state, before, impacts_.drive_work());
     ledger_.add(state, work);
   }
-  state.t += dt;
   state.dt_last = dt;
   state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);
   POLHODE_ASSERT(is_regular(state));

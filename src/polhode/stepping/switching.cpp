@@ -4,6 +4,7 @@
 
 #include <polhode/stepping/instant.hpp>
 #include <polhode/stepping/switching.hpp>
+#include <polhode/stepping/velocity_jump.hpp>
 
 namespace polhode {
 
@@ -55,8 +56,9 @@ SwitchReport switch_interactions(const System& system, State& state, std::span<c
   if (closes) {
     InstantSolver solver(system);
     std::vector<Vec6> bodies;
-    std::vector<double> nodes, impulses;
-    const auto lost = solver.jumps_onto(state, closed, bodies, nodes, impulses);
+    std::vector<double> nodes;
+    VelocityJump jump{.rows = {}, .more = {}, .rate = VelocityJump::Rate::after};
+    const auto lost = solver.jumps_onto(state, closed, bodies, nodes, jump.rows);
     report.solved = lost.has_value();
     if (!lost) {
       state = before;
@@ -64,8 +66,9 @@ SwitchReport switch_interactions(const System& system, State& state, std::span<c
     }
     report.lost = *lost;
     add_jumps(system, bodies, nodes, state);
+    take_jump(system, state, jump);
     for (std::size_t k = 0; k < closed.size(); ++k)
-      if (closed[k] != 0) report.impulse = std::max(report.impulse, std::abs(impulses[k]));
+      if (closed[k] != 0) report.impulse = std::max(report.impulse, std::abs(jump.rows[k]));
   }
   // Lost and new potential energy are separate: they do not compensate each other.
   ledger.add_switch(state, sums, report.lost, kept - potential);

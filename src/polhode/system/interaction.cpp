@@ -51,4 +51,19 @@ void clear_ground_sides(const PairStep& step, PairTerms& t) {
   }
 }
 
+void add_impulse(ImpulseSum kind, const PairStep& step, const Vec6& on_a, const Vec6& on_b,
+                 double* sum) {
+  const bool on_first = kind == ImpulseSum::on_a;
+  const bool given = (on_first ? step.a : step.b).moves;  // else that of the other side
+  const BodyStep& body = on_first == given ? step.a : step.b;
+  const Vec6& w = on_first == given ? on_a : on_b;
+  const Vec3 r = body.r_n + body.alpha_f * body.u, f = w.head<3>();
+  const Vec3 m = r.cross(f) + w.tail<3>();
+  const double sign = given ? 1.0 : -1.0;
+  for (int i = 0; i < 3; ++i) {
+    sum[i] += sign * f[i];
+    sum[3 + i] += sign * m[i];
+  }
+}
+
 }  // namespace polhode

@@ -62,6 +62,9 @@ class Group final : public InteractionGroup {
     t.always_queried = item.always_queried();
     t.reversible = item.reversible();
     t.compliant = item.compliant();
+    t.impulse_sum = item.impulse_sum();
+    t.work_entry = static_cast<short>(item.work_entry());
+    t.impulse_entry = static_cast<short>(item.impulse_entry());
     t.coupled_mass = item.coupled_mass();
     t.reach = item.reach();
     t.time_order = item.time_order();

@@ -27,8 +27,10 @@ struct InteractionTraits {
   bool works = false;  ///< work() must be called.
   bool prescribes = false, has_barrier = false, always_queried = false, reversible = false;
   bool compliant = false;
-  double coupled_mass = 0.0;  ///< [kg]
-  double reach = 0.0;         ///< [m]
+  ImpulseSum impulse_sum = ImpulseSum::none;
+  short work_entry = -1, impulse_entry = -1;  ///< In the history; −1: none.
+  double coupled_mass = 0.0;                  ///< [kg]
+  double reach = 0.0;                         ///< [m]
   int time_order = 2;
   const char* refusal = "";
 };

@@ -47,6 +47,11 @@ struct InteractionItem {
   /// Whether some of its rows follow functions of time, given by prescribed().
   [[nodiscard]] bool prescribes() const { return false; }
   void prescribed(const PairStep&, TimeSide, PrescribedRows& /*rows*/) const {}
+  /// Entry of the history with the work of the prescribed rows [J]; −1: none.
+  [[nodiscard]] int work_entry() const { return -1; }
+  /// Sum of impulses in the history, from impulse_entry() on, and its entry.
+  [[nodiscard]] ImpulseSum impulse_sum() const { return ImpulseSum::none; }
+  [[nodiscard]] int impulse_entry() const { return -1; }
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
@@ -128,6 +133,9 @@ struct OwnFunctions {
   static constexpr bool prescribed = !requires {
     requires std::same_as<decltype(&Item::prescribed), decltype(&Base::prescribed)>;
   };
+  static constexpr bool work_entry = !requires {
+    requires std::same_as<decltype(&Item::work_entry), decltype(&Base::work_entry)>;
+  };
   static constexpr bool time_functions = !requires {
     requires std::same_as<decltype(&Item::time_functions), decltype(&Base::time_functions)>;
   };
@@ -204,6 +212,8 @@ concept Interaction = HasInteractionFunctions<Item> &&
                       (!(OwnFunctions<Item>::dissipates || OwnFunctions<Item>::works) ||
                        OwnFunctions<Item>::work) &&
                       OwnFunctions<Item>::prescribes == OwnFunctions<Item>::prescribed &&
+                      // Drives count their work.
+                      (!OwnFunctions<Item>::prescribes || OwnFunctions<Item>::work_entry) &&
                       (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
                       (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance) &&
                       (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::impacts) &&

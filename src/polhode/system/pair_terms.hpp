@@ -84,6 +84,15 @@ struct PrescribedRows {
   Vec6 second = Vec6::Zero();     ///< c̈ there [1/s²].
 };
 
+/// Sum of impulses that an interaction keeps in its history: of its row [N s or N m s], or of its
+/// wrench on one of its bodies, about the world's origin, six numbers [N s, N m s].
+enum class ImpulseSum : unsigned char { none, of_row, on_a, on_b };
+
+/// Adds the impulse of a wrench to such a sum. The ground's side has the opposite one.
+/// @param sum  Of on_a or on_b. @param on_a, on_b  About the centres of mass; zero for the ground.
+void add_impulse(ImpulseSum kind, const PairStep& step, const Vec6& on_a, const Vec6& on_b,
+                 double* sum);
+
 /// Bodies of an interaction; kGround for none. Single-body loads use b alone.
 struct Participants {
   int a = kGround, b = kGround;

@@ -56,7 +56,7 @@ std::vector<Slice> slices_of(const io::ResultsReader& results) {
   };
   packed(io::results::kPackedBodies, "bodies",
          {"position", "orientation", "velocity", "angular_velocity"});
-  packed(io::results::kPackedJoints, "joints", {"force", "moment"});
+  packed(io::results::kPackedJoints, "joints", {"force", "moment", "impulse", "angular_impulse"});
   const std::string joints = io::results::kPackedJoints, loads = io::results::kPackedLoads;
   const std::vector<std::string> joint_names = results.names(joints + "/names");
   const std::vector<std::int64_t> first = results.numbers(joints + "/first"),
@@ -75,13 +75,17 @@ std::vector<Slice> slices_of(const io::ResultsReader& results) {
       }
   const std::vector<std::string> load_names = results.names(loads + "/names"),
                                  load_types = results.names(loads + "/types");
-  const std::vector<std::int64_t> load_first = results.numbers(loads + "/first");
-  if (load_types.size() != load_names.size() || load_first.size() != load_names.size())
+  const std::vector<std::int64_t> load_first = results.numbers(loads + "/first"),
+                                  load_count = results.numbers(loads + "/count");
+  if (load_types.size() != load_names.size() || load_first.size() != load_names.size() ||
+      load_count.size() != load_names.size())
     results.refuse("its lists of loads do not fit each other");
   for (std::size_t k = 0; k < load_names.size(); ++k) {
     auto at = static_cast<std::size_t>(load_first[k]);
     for (const LoadChannel& c : load_kind(load_types[k]).channels) {
       const auto size = static_cast<std::size_t>(c.size);
+      // Results of earlier versions may have fewer.
+      if (at + size > static_cast<std::size_t>(load_first[k] + load_count[k])) break;
       list.push_back({loads + "/values", format("loads.{}.{}", load_names[k], c.name), c.unit, at,
                       labels_of(size)});
       at += size;

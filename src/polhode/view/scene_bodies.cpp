@@ -177,14 +177,20 @@ void add_connections(Json& manifest, const io::ResultsReader& results, const Mod
   Json& loads = manifest["loads"] = Json::array();
   const std::vector<std::string> load_names = results.names(packed_loads + "/names"),
                                  load_types = results.names(packed_loads + "/types");
-  const std::vector<std::int64_t> load_first = results.numbers(packed_loads + "/first");
-  if (load_types.size() != load_names.size() || load_first.size() != load_names.size())
+  const std::vector<std::int64_t> load_first = results.numbers(packed_loads + "/first"),
+                                  load_count = results.numbers(packed_loads + "/count");
+  if (load_types.size() != load_names.size() || load_first.size() != load_names.size() ||
+      load_count.size() != load_names.size())
     results.refuse("its lists of loads do not fit each other");
   for (std::size_t k = 0; k < load_names.size(); ++k) {
     Json entry = {{"name", load_names[k]}, {"type", load_types[k]}, {"first", load_first[k]}};
     Json columns = Json::array();
-    for (const LoadChannel& c : load_kind(load_types[k]).channels)
+    std::int64_t numbers = 0;
+    for (const LoadChannel& c : load_kind(load_types[k]).channels) {
+      numbers += c.size;
+      if (numbers > load_count[k]) break;  // results of earlier versions may have fewer
       columns.push_back({{"name", c.name}, {"unit", c.unit}, {"size", c.size}});
+    }
     entry["columns"] = columns;
     if (model != nullptr)
       if (const LoadSpec* load = named(model->loads, load_names[k], k)) {

@@ -94,9 +94,12 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   vectors(frame.force);
   vectors(frame.moment);
   for (double x : frame.coordinates) scalar(x);
-  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power,
-                           &frame.work, &frame.loads})
+  for (const auto* list :
+       {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power, &frame.work})
     for (double x : *list) scalar(x);
+  vectors(frame.impulse);
+  vectors(frame.angular_impulse);
+  for (double x : frame.loads) scalar(x);
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
     scalar(x);

@@ -11,6 +11,7 @@ constexpr StoredQuantity kBodyQuantities[] = {{"position", 3, "m"},
                                               {"velocity", 3, "m/s"},
                                               {"angular_velocity", 3, "rad/s"}};
 constexpr StoredQuantity kReactions[] = {{"force", 3, "N"}, {"moment", 3, "N m"}};
+constexpr StoredQuantity kImpulses[] = {{"impulse", 3, "N s"}, {"angular_impulse", 3, "N m s"}};
 constexpr StoredQuantity kCoordinates[] = {{"coordinates", 1, "rad or m"},
                                            {"rates", 1, "rad/s or m/s"}};
 constexpr StoredQuantity kEnergies[] = {{"kinetic", 1, "J"}, {"potential", 1, "J"},
@@ -196,6 +197,12 @@ FilePlan plan_results(const ResultsLayout& layout) {
     }
   }
   plan_resistance(layout, p, named);
+  for (const StoredQuantity& q : kImpulses) {
+    if (!layout.impulses) break;
+    p.add(r::kPackedJoints, q, {joints, q.size});
+    for (std::size_t i = 0; named && i < joints; ++i)
+      p.view(r::kJoints, layout.joints[i].name, q, i, 1, true);
+  }
   add_loads(p, layout, named);
   for (const StoredQuantity& q : kEnergies) p.add(r::kEnergy, q, {});
   p.add(r::kMomentum, {"linear", 3, "kg m/s"}, {3});

@@ -46,6 +46,7 @@ ResultsLayout results_layout(const Simulation& simulation) {
                              static_cast<int>(joint.coordinates.size()),
                              static_cast<int>(joint.friction.size()),
                              static_cast<int>(joint.stops.size()), !joint.power.empty()});
+    layout.impulses = !joint.impulses.empty();  // all joints alike
   }
   for (const LoadSpec& load : model.loads)
     if (load.solid < 0) layout.loads.push_back({load.name, load.type});
@@ -91,6 +92,9 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.stops.insert(frame.stops.end(), joint.stops.begin(), joint.stops.end());
     frame.power.insert(frame.power.end(), joint.power.begin(), joint.power.end());
     frame.work.insert(frame.work.end(), joint.work.begin(), joint.work.end());
+    if (joint.impulses.empty()) continue;
+    frame.impulse.push_back(joint.impulses[0]);
+    frame.angular_impulse.push_back(joint.impulses[1]);
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
     if (model.loads[i].solid >= 0) continue;

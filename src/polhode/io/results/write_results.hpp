@@ -55,6 +55,7 @@ struct ResultsLayout {
   std::vector<SolidEntry> solids{};
   std::vector<BeamEntry> beams{};
   std::vector<CableEntry> cables{};
+  bool impulses = false;  ///< Of joints are reported.
   bool has_contacts = false;
   std::vector<std::string> contacts{};  ///< Recorded pairs of bodies: "a+b".
 
@@ -73,7 +74,8 @@ struct ResultsFrame {
   std::vector<double> coordinates, rates, loads;
   /// Numbers of joints with these quantities, see JointReport.
   std::vector<double> friction, slips, stops, power, work;
-  std::vector<Vec3> force, moment;  ///< Of a on b, at the joint's point on b, world.
+  std::vector<Vec3> force, moment;             ///< Of a on b, at the joint's point on b, world.
+  std::vector<Vec3> impulse, angular_impulse;  ///< Of joints, see JointReport; may be empty.
   std::vector<SolidReport> solids;
   std::vector<std::vector<InterfaceReport>> interfaces;  ///< By solid.
   std::vector<BeamReport> beams;
