@@ -147,4 +147,118 @@ output: {hdf5: false}
     }
 }
 
+/// Two wheels with hinges on a carrier, which is the ground or welded to it.
+std::string pair_on(const std::string& carrier, const std::string& friction = "") {
+  const auto hinge = [&](const char* wheel, const char* at) {
+    return format("{{type: revolute, bodies: [{}, {}], at: [{}], axis: z{}}}", carrier, wheel, at,
+                  friction);
+  };
+  return format(R"(
+format: 1
+variables: {{h: 1 ms}}
+bodies:
+  a: {{mass: 1, inertia: [0.02, 0.02, 0.02]}}
+  b: {{mass: 1, inertia: [0.05, 0.05, 0.05], position: [0.3, 0, 0]}}
+  frame: {{mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0, -1]}}
+joints:
+  weld: {{type: fixed, bodies: [ground, frame], at: [0, 0, -1]}}
+  ja: {}
+  jb: {}
+loads:
+  it: {{type: gear, joints: [ja, jb], ratio: -2}}
+  m: {{type: rotary_motor, joint: ja, moment: 10}}
+  k: {{type: torsional_spring, joint: jb, stiffness: 100}}
+analysis: {{type: dynamics, duration: 0.1 s, step: h}}
+output: {{hdf5: false}}
+)",
+                hinge("a", "0, 0, 0"), hinge("b", "0.3, 0, 0"));
+}
+
+// x of the wheels is φ and -φ/2: 0.0325 φ'' + 25 φ = 10. The teeth give the second wheel its moment
+// at 0.2 m, and both hinges carry their force along the pitch line. @tests{gear-angle}
+TEST(Connectors, HingesOnTheGroundCarryTheForceOfTeeth) {
+  const double J = 0.02 + 0.05 / 4.0, w = std::sqrt(25.0 / J), c = std::cos(0.1 * w);
+  const double F = (50.0 * 0.4 * (1.0 - c) + 0.025 * 0.4 * w * w * c) / 0.2;
+  EXPECT_NEAR(F, 157.416, 1e-3);
+  for (const char* carrier : {"ground", "frame"})
+    for (const char* h : {"10 ms", "1 ms", "0.01 ms"}) {
+      Simulation s(
+          io::read_model_text(pair_on(carrier), "m.yaml", {std::string("variables.h=") + h}));
+      const RunSummary r = s.run();
+      const double step = std::string(h) == "10 ms" ? 0.01 : std::string(h) == "1 ms" ? 1e-3 : 1e-5;
+      for (const char* joint : {"ja", "jb"}) {
+        const Vec3 f = s.joint(joint).force;
+        EXPECT_NEAR(std::abs(f.y()), F, 6e4 * step * step + 1e-5)
+            << carrier << ' ' << joint << ' ' << h;
+        EXPECT_NEAR(f.x(), 0.0, 1e-6 + 6e4 * step * step) << carrier << ' ' << joint << ' ' << h;
+      }
+      EXPECT_LT(r.angular_momentum_drift, 1e-10) << carrier << ' ' << h;
+      EXPECT_LT(r.linear_momentum_drift, 1e-10) << carrier << ' ' << h;
+      EXPECT_LT(r.energy_drift, 1e-10) << carrier << ' ' << h;
+    }
+}
+
+// Bearing friction has the force of the teeth.
+TEST(Connectors, FrictionOfHingesOnTheGroundIsThatOnACarrier) {
+  const auto angle = [](const char* carrier, const char* friction) {
+    return run(pair_on(carrier, friction)).load[2];
+  };
+  const double smooth = angle("ground", "");
+  const char* rubs = ", friction: {mu: 0.3, radius: 20 mm}";
+  EXPECT_GT(smooth - angle("ground", rubs), 0.01);
+  EXPECT_NEAR(angle("ground", rubs), angle("frame", rubs), 1e-9);
+}
+
+// Shafts on one axis, and slides, have no teeth: the ground takes the difference of their moments
+// and forces, which the balance of momentum contains.
+TEST(Connectors, TheGroundTakesWhatAGearboxCannotBalance) {
+  for (const char* h : {"20 ms", "2 ms", "0.2 ms"})
+    for (const char* kind : {"revolute", "prismatic"}) {
+      const Outcome o = run(format(R"(
+format: 1
+variables: {{h: 2 ms}}
+bodies:
+  a: {{mass: 1, inertia: [1, 1, 1]}}
+  b: {{mass: 1, inertia: [1, 1, 1], position: [0, 0, 0.5]}}
+joints:
+  ja: {{type: {0}, bodies: [ground, a], at: [0, 0, 0], axis: z}}
+  jb: {{type: {0}, bodies: [ground, b], at: [0, 0, 0.5], axis: z}}
+loads:
+  it: {{type: gear, joints: [ja, jb], ratio: -2}}
+  m: {{type: moment, body: a, moment: [0, 0, 1]}}
+  f: {{type: force, body: a, at: [0, 0, 0], force: [0, 0, 1]}}
+analysis: {{type: dynamics, duration: 1 s, step: h}}
+output: {{hdf5: false}}
+)",
+                                   kind),
+                            {std::string("variables.h=") + h});
+      EXPECT_NEAR(o.load[2], 0.4, 1e-5) << kind << ' ' << h;  // (1 + 1/4) q'' = 1, to h²
+      EXPECT_LT(o.summary.angular_momentum_drift, 1e-10) << kind << ' ' << h;
+      EXPECT_LT(o.summary.linear_momentum_drift, 1e-10) << kind << ' ' << h;
+    }
+}
+
+// A ring on the ground: the balance of momentum of a planetary train, whose pin carries the forces
+// of both meshes: twice that of the sun, if the planet is light.
+TEST(Connectors, ARingOnTheGroundHoldsItsPlanet) {
+  for (const char* h : {"20 ms", "2 ms", "0.2 ms"}) {
+    Simulation s(
+        io::read_model_text(planetary("  drive: {type: rotary_motor, joint: shaft, moment: 0.6}",
+                                      "type: dynamics, duration: 0.5 s, step: h"),
+                            "m.yaml", {std::string("variables.h=") + h}));
+    const RunSummary r = s.run();
+    EXPECT_LT(r.angular_momentum_drift, 1e-10) << h;
+    EXPECT_LT(r.linear_momentum_drift, 1e-10) << h;
+    // Radii 0.1 m of sun and planet; planet: J ω' = (F_sun - F_ring) 0.1 along the rim.
+    const double J = 0.08 + 0.04 + 16.0 * 0.02 + 4.0 * 0.008, a = 3.0 * 0.6 / J;
+    const double sun = (0.6 - 0.02 * 4.0 * a) / 0.1, ring = sun - 0.008 * 2.0 * a / 0.1;
+    const BodyMotion carrier = s.body(0);
+    const Vec3 along = carrier.q * Vec3::UnitY();
+    const double mass = 1.0 * 0.2 * a;  // of the planet on its circle
+    EXPECT_NEAR(std::abs(s.joint("pin").force.dot(along)), std::abs(sun + ring - mass),
+                20.0 * 4e-4 * (h[0] == '2' && h[1] == '0' ? 1.0 : 0.01) + 1e-6)
+        << h;
+  }
+}
+
 }  // namespace polhode::gears_tests

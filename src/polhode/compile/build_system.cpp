@@ -308,14 +308,9 @@ class Builder {
     std::array<GearJoint, 2> pair;
     for (std::size_t i = 0; i < 2; ++i) {
       const auto index = static_cast<std::size_t>(model_.joint_index(joints[i]));
-      pair[i] = {&system_.group<Joint>().items()[index], coordinates[i],
-                 model_.joints[index].assembled_start};
+      pair[i] = {&system_.group<Joint>().items()[index], coordinates[i]};
     }
-    std::vector<GearPose> poses;
-    for (const BodySpec& body : model_.bodies)
-      if (!body.fixed)
-        poses.push_back({body.position, body.orientation.normalized().toRotationMatrix()});
-    return gear_geometry(where, pair, poses);
+    return gear_geometry(where, pair);
   }
 
   void add_beam(const BeamSpec& beam) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -153,6 +154,12 @@ CoordinateMotion Gear::coordinate(int i, const PairStep& step) const {
       break;
   }
   return placed(c, coordinate_motion(c.angle, e.from, e.to, at_n, conserving));
+}
+
+bool Gear::holds_ground() const {
+  if (bodies.a == kGround || bodies.b == kGround) return false;
+  return std::any_of(pair_.coordinate.begin(), pair_.coordinate.end(),
+                     [](const GearCoordinate& c) { return c.from == 0 || c.to == 0; });
 }
 
 double Gear::rate(int i, const PairStep& step) const {

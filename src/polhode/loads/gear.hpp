@@ -21,6 +21,7 @@ class Gear : public InteractionItem {
   [[nodiscard]] int rows() const { return 1; }
   [[nodiscard]] int history_size() const { return kHistory; }
   [[nodiscard]] Coupling coupling() const { return Coupling::all; }
+  [[nodiscard]] bool holds_ground() const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   /// Report at an instant: force or moment on the second body along x_0, and that along x_1;

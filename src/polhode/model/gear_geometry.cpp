@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <initializer_list>
+#include <optional>
+#include <vector>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -17,9 +20,8 @@ constexpr double kParallel = 1e-6;
 
 class GearPlanner {
  public:
-  GearPlanner(const std::string& where, const std::array<GearJoint, 2>& joints,
-              const std::vector<GearPose>& poses)
-      : where_(where), joints_(joints), poses_(poses) {
+  GearPlanner(const std::string& where, const std::array<GearJoint, 2>& joints)
+      : where_(where), joints_(joints) {
     for (std::size_t i = 0; i < 2; ++i) find_coordinate(i);
   }
 
@@ -34,15 +36,18 @@ class GearPlanner {
       for (int body : {j.joint->bodies.a, j.joint->bodies.b})
         if (body != kGround && std::find(moving.begin(), moving.end(), body) == moving.end())
           moving.push_back(body);
-    if (moving.size() <= 2) {
-      out.bodies = {moving.size() == 2 ? moving[0] : kGround, moving.back()};
-      for (std::size_t i = 0; i < 2; ++i) {
-        const Participants b = joints_[i].joint->bodies;
-        coordinate_[i].from = code(out.bodies, b.a);
-        coordinate_[i].to = code(out.bodies, b.b);
-      }
+    const std::optional<int> carrier = common_carrier();
+    if (moving.size() > 2) {
+      if (moving.size() > 3 || !carrier || *carrier == kGround)
+        throw InputError(where_ + ".joints",
+                         "act between more than two moving bodies without a common carrier",
+                         "Name joints of one carrier, or joints on the ground");
+      check_mesh(*carrier);
+      on_carrier(out, *carrier);
+    } else if (carrier && meshes(*carrier)) {
+      on_carrier(out, *carrier);
     } else {
-      on_carrier(out, moving);
+      in_joints(out, moving);
     }
     out.pair.coordinate = coordinate_;
     return out;
@@ -79,42 +84,97 @@ class GearPlanner {
     }
   }
 
-  /// Side of a joint that is not on the carrier.
+  /// Side of a joint that is not on the carrier, and the frame of the joint on the carrier.
   struct Wheel {
     int body;
     bool is_b;
     Vec3 Z;
     Mat3 R;
+    Vec3 Z_carrier;
+    Mat3 R_carrier;
   };
   [[nodiscard]] Wheel wheel(std::size_t i, int carrier) const {
     const Joint& j = *joints_[i].joint;
-    const bool is_b = j.bodies.a == carrier;
-    return is_b ? Wheel{j.bodies.b, true, j.frames().Z_b, j.frames().R_b}
-                : Wheel{j.bodies.a, false, j.frames().Z_a, j.frames().R_a};
+    const JointFrames& f = j.frames();
+    return j.bodies.a == carrier ? Wheel{j.bodies.b, true, f.Z_b, f.R_b, f.Z_a, f.R_a}
+                                 : Wheel{j.bodies.a, false, f.Z_a, f.R_a, f.Z_b, f.R_b};
   }
 
-  void on_carrier(GearGeometry& out, const std::vector<int>& moving) {
+  /// Body of both joints, which may be the ground; of two a moving one.
+  [[nodiscard]] std::optional<int> common_carrier() const {
+    std::optional<int> found;
     const Participants p = joints_[0].joint->bodies, q = joints_[1].joint->bodies;
-    int carrier = kGround;
     for (int body : {p.a, p.b})
-      if (body != kGround && (body == q.a || body == q.b)) carrier = body;
-    if (moving.size() > 3 || carrier == kGround)
-      throw InputError(where_ + ".joints",
-                       "act between more than two moving bodies without a common carrier",
-                       "Name joints of one carrier, or joints on the ground");
+      if ((body == q.a || body == q.b) && (!found || *found == kGround)) found = body;
+    return found;
+  }
+
+  [[nodiscard]] bool holds(std::size_t i, std::initializer_list<const char*> types) const {
+    return std::any_of(types.begin(), types.end(),
+                       [&](const char* type) { return joints_[i].joint->type() == type; });
+  }
+  [[nodiscard]] bool are_coaxial(int carrier) const {
     const Wheel one = wheel(0, carrier), two = wheel(1, carrier);
-    if (one.body == kGround || two.body == kGround)
+    const Vec3 n = one.R_carrier.col(2), u = two.Z_carrier - one.Z_carrier;
+    return are_parallel(one, two) && (u - u.dot(n) * n).norm() <= kParallel * (1.0 + u.norm());
+  }
+  [[nodiscard]] static bool are_parallel(const Wheel& one, const Wheel& two) {
+    return one.R_carrier.col(2).cross(two.R_carrier.col(2)).norm() < kParallel;
+  }
+  /// Whether teeth can act between two wheels, or a rack and a pinion, on a carrier.
+  [[nodiscard]] bool meshes(int carrier) const {
+    if (wheel(0, carrier).body == wheel(1, carrier).body) return false;
+    if (coordinate_[0].kind == Kind::displacement)
+      return coordinate_[1].kind == Kind::angle && holds(0, {"prismatic"});
+    return holds(0, {"revolute", "cylindrical"}) && holds(1, {"revolute", "cylindrical"}) &&
+           !are_coaxial(carrier);
+  }
+  /// Rejects what cannot mesh on a moving carrier.
+  void check_mesh(int carrier) const {
+    if (wheel(0, carrier).body == kGround || wheel(1, carrier).body == kGround)
       throw InputError(where_ + ".joints",
                        "connect the carrier to the ground and a wheel to the carrier",
                        "Name joints of one carrier, or joints on the ground");
-    out.bodies = {one.body, two.body};
-    if (coordinate_[0].kind == Kind::displacement && coordinate_[1].kind == Kind::displacement)
+    const bool slides = coordinate_[0].kind == Kind::displacement;
+    if (slides && coordinate_[1].kind == Kind::displacement)
       throw InputError(where_ + ".joints", "are both displacements on a moving carrier",
                        "A gear on a moving carrier needs two wheels, or a rack and a pinion");
+    const auto refuse = [&](std::size_t i, const char* hint) {
+      throw InputError(where_ + ".joints",
+                       format("'{}' is {}, on a moving carrier", joints_[i].joint->name,
+                              joints_[i].joint->type()),
+                       hint);
+    };
+    if (slides && !holds(0, {"prismatic"})) refuse(0, "Let a prismatic joint hold the rack");
+    for (std::size_t i = 0; i < 2 && !slides; ++i)
+      if (!holds(i, {"revolute", "cylindrical"}))
+        refuse(i, "Use revolute or cylindrical joints there");
+    if (!slides && are_coaxial(carrier))
+      throw InputError(where_ + ".joints",
+                       "have one axis on a moving carrier: their wheels do not mesh",
+                       "Put an intermediate wheel on the carrier, as real gears do");
+  }
+  /// Coordinates of the joints themselves, of at most two moving bodies: the ground, if it is a
+  /// third one, takes the difference of their forces and moments.
+  void in_joints(GearGeometry& out, const std::vector<int>& moving) {
+    out.bodies = {moving.size() == 2 ? moving[0] : kGround, moving.back()};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Participants b = joints_[i].joint->bodies;
+      coordinate_[i].from = code(out.bodies, b.a);
+      coordinate_[i].to = code(out.bodies, b.b);
+    }
+  }
+
+  void on_carrier(GearGeometry& out, int carrier) {
+    const Wheel one = wheel(0, carrier), two = wheel(1, carrier);
+    out.bodies = {one.body, two.body};
     if (out.mixed)
       rack_and_pinion(one, two);
     else
       wheels(one, two);
+    for (GearCoordinate& c : coordinate_)
+      for (int* end : {&c.from, &c.to})
+        if ((*end == 1 ? one : two).body == kGround) *end = 0;
   }
 
   /// Sets the plane of a wheel, with axes normal to its own, so that its angle increases with the
@@ -126,20 +186,7 @@ class GearPlanner {
   }
 
   void wheels(const Wheel& one, const Wheel& two) {
-    for (const GearJoint& j : joints_)
-      if (j.joint->type() != "revolute" && j.joint->type() != "cylindrical")
-        throw InputError(where_ + ".joints",
-                         format("'{}' is {}, on a moving carrier", j.joint->name, j.joint->type()),
-                         "Use revolute or cylindrical joints there");
-    const GearPose &at_1 = poses_[static_cast<std::size_t>(one.body)],
-                   &at_2 = poses_[static_cast<std::size_t>(two.body)];
-    const Vec3 n_1 = at_1.Lambda * one.R.col(2), n_2 = at_2.Lambda * two.R.col(2);
-    const Vec3 u = at_2.r + at_2.Lambda * two.Z - at_1.r - at_1.Lambda * one.Z;
-    const bool parallel = n_1.cross(n_2).norm() < kParallel;
-    if (parallel && (u - u.dot(n_1) * n_1).norm() <= kParallel * (1.0 + u.norm()))
-      throw InputError(where_ + ".joints",
-                       "have one axis on a moving carrier: their wheels do not mesh",
-                       "Put an intermediate wheel on the carrier, as real gears do");
+    const bool parallel = are_parallel(one, two);
     const std::array<const Wheel*, 2> wheel{&one, &two};
     for (std::size_t i = 0; i < 2; ++i) {
       const Wheel &own = *wheel[i], &other = *wheel[1 - i];
@@ -157,29 +204,18 @@ class GearPlanner {
   /// A rack does not rotate relative to its carrier: the pinion's angle is the same relative to
   /// both, and the pinion's centre moves along the rack.
   void rack_and_pinion(const Wheel& rack, const Wheel& pinion) {
-    if (joints_[0].joint->type() != "prismatic")
-      throw InputError(where_ + ".joints",
-                       format("'{}' is {}, on a moving carrier", joints_[0].joint->name,
-                              joints_[0].joint->type()),
-                       "Let a prismatic joint hold the rack");
-    for (const GearJoint& j : joints_)
-      if (j.assembled_start)
-        throw InputError(
-            where_ + ".joints",
-            format("'{}' is on a moving carrier and is assembled at the start", j.joint->name),
-            "Give this joint by at and axis, not by at_body");
     // Along z of the prismatic joint, whose sides are aligned.
     const Vec3 t = rack.R.col(2);
     GearCoordinate& slide = coordinate_[0];
     slide.displacement = {rack.Z, pinion.Z, rack.is_b ? Vec3(-t) : t};
     slide.from = 1;
     slide.to = 2;
-    const Mat3 to_rack = poses_[static_cast<std::size_t>(rack.body)].Lambda.transpose() *
-                         poses_[static_cast<std::size_t>(pinion.body)].Lambda;
+    // From the pinion's axes on the carrier to the rack: angles count from the start anyway.
+    const Mat3 to_rack = rack.R * rack.R_carrier.transpose() * pinion.R_carrier;
     GearCoordinate& turn = coordinate_[1];
     turn.angle = {};
-    turn.angle.E = to_rack * pinion.R.col(0);
-    turn.angle.F = to_rack * (pinion.is_b ? Vec3(pinion.R.col(1)) : Vec3(-pinion.R.col(1)));
+    turn.angle.E = to_rack.col(0);
+    turn.angle.F = pinion.is_b ? Vec3(to_rack.col(1)) : Vec3(-to_rack.col(1));
     turn.angle.D = pinion.R.col(0);
     turn.from = 1;
     turn.to = 2;
@@ -187,15 +223,13 @@ class GearPlanner {
 
   const std::string& where_;
   const std::array<GearJoint, 2>& joints_;
-  const std::vector<GearPose>& poses_;
   std::array<GearCoordinate, 2> coordinate_;
 };
 
 }  // namespace
 
-GearGeometry gear_geometry(const std::string& where, const std::array<GearJoint, 2>& joints,
-                           const std::vector<GearPose>& poses) {
-  return GearPlanner(where, joints, poses).plan();
+GearGeometry gear_geometry(const std::string& where, const std::array<GearJoint, 2>& joints) {
+  return GearPlanner(where, joints).plan();
 }
 
 }  // namespace polhode

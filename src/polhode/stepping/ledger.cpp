@@ -23,11 +23,12 @@ std::vector<int> with_work(const System& system) {
   return list;
 }
 
-std::vector<int> on_one_body(const System& system, const NewtonEngine& engine) {
+std::vector<int> on_the_ground(const System& system, const NewtonEngine& engine) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
-    if ((ref.a == kGround) != (ref.b == kGround) && !engine.knows_ground(i)) list.push_back(i);
+    const bool one_body = (ref.a == kGround) != (ref.b == kGround) && !engine.knows_ground(i);
+    if (one_body || system.traits(ref).holds_ground) list.push_back(i);
   }
   return list;
 }
@@ -43,8 +44,8 @@ EnergyLedger::EnergyLedger(const System& system, const LaneKernels& kernels,
       engine_(&engine),
       mass_(mass_blocks(system)),
       working_(with_work(system)),
-      outside_(on_one_body(system, engine)),
-      outside_sweep_(system, on_one_body(system, engine)),
+      outside_(on_the_ground(system, engine)),
+      outside_sweep_(system, on_the_ground(system, engine)),
       nodes_(system) {
   for (const BodyData& b : system.bodies()) total_mass_ += b.mass;
   for (int i = 0; i < system.nodes().count(); ++i) total_mass_ += system.nodes().node_mass(i);
@@ -58,6 +59,13 @@ EnergyLedger::EnergyLedger(const System& system, const LaneKernels& kernels,
     const double mass = system.traits(ref).coupled_mass;
     const auto slot = [&](int body) { return body == kGround ? -1 : system.slot(body); };
     if (mass != 0.0) coupled_.push_back({slot(ref.a), slot(ref.b), mass});
+  }
+  for (const InteractionRef& ref : system.interactions()) {
+    if (ref.rows == 0) continue;
+    const auto basis = system.group(ref.group).describe(ref.item).motion_basis;
+    const int forces = basis ? basis->translation_rows() : ref.rows;
+    row_sizes_.push_back(
+        {ref.first_row, forces, ref.rows - forces, system.slot(ref.a == kGround ? ref.b : ref.a)});
   }
   if (!touched_.empty()) steps_.resize(system.body_count() + 1);
 }
@@ -134,24 +142,39 @@ void EnergyLedger::before_commit(State& state, Trial& trial) {
   Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
   potential_ += nodes_.close(l, state, trial, impulse, turning);
   engine_->add_ground_wrench(impulse.data(), turning.data());
+  // Sums of magnitudes: terms that cancel, in a body or in the sums, leave their round-off.
+  outside_force_ = impulse.norm();
+  outside_moment_ = turning.norm();
+  const auto add_ground = [&](const BodyStep& body, const Vec6& w) {
+    const Vec3 r = body.r_n + alpha_f * body.u, f = w.head<3>(), m = w.tail<3>();
+    impulse += f;
+    turning += r.cross(f) + m;
+    outside_force_ += f.norm();
+    outside_moment_ += r.norm() * f.norm() + m.norm();
+  };
+  for (const RowSizes& rows : row_sizes_) {
+    const double* lambda = trial.lambda.data() + rows.first_row;
+    double f = 0.0, m = 0.0;
+    for (int k = 0; k < rows.forces; ++k) f += std::abs(lambda[k]);
+    for (int k = 0; k < rows.moments; ++k) m += std::abs(lambda[rows.forces + k]);
+    const Lane3& r = state.blocks[static_cast<std::size_t>(rows.slot / kLanes)].r;
+    const int lane = rows.slot % kLanes;
+    outside_force_ += f;
+    outside_moment_ += m + f * (std::abs(r[0][lane]) + std::abs(r[1][lane]) + std::abs(r[2][lane]) +
+                                system_->length_scale());
+  }
   StepContext values_only = trial.context;
   values_only.tangents = false;
   outside_sweep_.run(steps_, values_only, trial.lambda.data(), state.history.data(),
                      [&](int interaction, const PairStep& step, const PairTerms& terms) {
-                       const bool on_a = system_->interactions()[interaction].a != kGround;
-                       const Vec6& w = on_a ? terms.wrench_a : terms.wrench_b;
-                       const BodyStep& body = on_a ? step.a : step.b;
-                       const Vec3 f = w.head<3>();
-                       const Vec3 r_alpha = body.r_n + alpha_f * body.u;
-                       impulse += f;
-                       turning += r_alpha.cross(f) + w.tail<3>();
+                       const InteractionRef& ref = system_->interactions()[interaction];
+                       if (ref.a != kGround) add_ground(step.a, terms.wrench_a);
+                       if (ref.b != kGround) add_ground(step.b, terms.wrench_b);
                      });
   for (int i = 0; i < 3; ++i) {
     l.impulse[i].add(dt * impulse[i]);
     l.angular_impulse[i].add(dt * turning[i]);
   }
-  outside_force_ = impulse.norm();
-  outside_moment_ = turning.norm();
 }
 
 /// @eq{drive-work}

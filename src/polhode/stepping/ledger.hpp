@@ -66,7 +66,7 @@ class EnergyLedger {
   std::vector<MassBlock> mass_;
   double total_mass_ = 0.0;
   std::vector<int> working_;  ///< Interactions without rows: they store, dissipate, do work.
-  /// Interactions with one moving body that are not summed by the engine.
+  /// Interactions with the ground that are not summed by the engine.
   std::vector<int> outside_;
   InteractionSweep outside_sweep_;
   NodeLedger nodes_;
@@ -76,9 +76,14 @@ class EnergyLedger {
     double mass;
   };
   std::vector<CoupledMass> coupled_;  ///< Kinetic energy of interactions.
+  /// Rows of an interaction, those of forces first, and a body of it.
+  struct RowSizes {
+    int first_row, forces, moments, slot;
+  };
+  std::vector<RowSizes> row_sizes_;
   std::vector<BodyStep> steps_;
   BodySums at_n_, at_n1_;                              ///< Of the state before and after the step.
-  double outside_force_ = 0.0, outside_moment_ = 0.0;  ///< Over the last step [N, N m].
+  double outside_force_ = 0.0, outside_moment_ = 0.0;  ///< Sums of magnitudes over the last step.
   bool sums_are_of_state_ = false;
   double potential_ = 0.0;  ///< Stored by the interactions at the state.
 };

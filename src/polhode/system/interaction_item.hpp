@@ -33,6 +33,8 @@ struct InteractionItem {
   [[nodiscard]] bool conservative() const { return true; }
   /// Whether energy is dissipated: not allowed in steps backwards in time.
   [[nodiscard]] bool dissipates() const { return false; }
+  /// Whether the ground takes part besides two moving bodies, whose wrenches it balances.
+  [[nodiscard]] bool holds_ground() const { return false; }
   /// m_ab of a mass matrix that couples the centres of mass of a and b [kg]. In addition to the
   /// bodies' own, there is the kinetic energy −½ m_ab |v_a − v_b|², and evaluate() exerts its
   /// forces (system/mass_coupling.hpp).
