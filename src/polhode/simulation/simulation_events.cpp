@@ -65,7 +65,9 @@ StepReport Simulation::advance(double t_limit) {
       if (!s.due_at_start.empty()) {
         s.go_to(before);
         if (!let_events_come(report)) return report;
-        report = {.accepted = true, .t = s.state.t};
+        report = StepReport{};
+        report.accepted = true;
+        report.t = s.state.t;
         if (s.controllers) s.let_act(*this, report);
         if (report.accepted && !s.stopped()) continue;
         return report;

@@ -383,8 +383,10 @@ void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int i
 }
 
 StepReport Stepper::Impl::advance(State& state, double t_limit) {
-  if (skip(state, t_limit)) return {.accepted = true, .t = state.t};
   StepReport report;
+  report.accepted = skip(state, t_limit);
+  report.t = state.t;
+  if (report.accepted) return report;
   const double start = state.t;
   const TimeBreak ahead = next_break(state);
   const double limit = std::min(t_limit, landing(ahead));
