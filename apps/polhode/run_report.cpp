@@ -59,7 +59,10 @@ void add_stress_rows(std::vector<std::vector<std::string>>& rows, const RunSumma
 std::string statics_table(const RunSummary& s) {
   const StaticReport& r = *s.statics;
   std::vector<std::vector<std::string>> rows{
-      {"load carried", format("{:.6g}", r.load_factor), "of the whole"},
+      r.history > 0.0 ? std::vector<std::string>{"time", format("{:.6g} s", r.load_factor),
+                                                 format("of {:.6g} s", r.history)}
+                      : std::vector<std::string>{"load carried", format("{:.6g}", r.load_factor),
+                                                 "of the whole"},
       {"load steps", format("{}", s.steps), format("{} cut", s.rejected_steps)},
       {"Newton iterations", format("{}", r.iterations)},
       {"unbalanced force", format("{:.1e} N", r.residual),
@@ -71,16 +74,14 @@ std::string statics_table(const RunSummary& s) {
                      : format("no, in {}", counted(static_cast<std::size_t>(r.unstable),
                                                    "direction", "directions"))}};
   add_stress_rows(rows, s);
-  rows.push_back({"time", seconds(s.wall_time_s)});
+  rows.push_back({"wall time", seconds(s.wall_time_s)});
   rows.push_back({"solver", s.solver});
   std::string text = table(rows);
   for (const std::string& motion : r.free_motions) text += format("  Free motion: {}.\n", motion);
   for (const std::string& cable : r.slack)
     text += format("  {}. Shorten its free_length if it should be taut.\n", cable);
   if (r.relaxations > 0)
-    text +=
-        "  Slack cables: an equilibrium was found by relaxation, as Newton's method did not "
-        "converge.\n";
+    text += "  An equilibrium was found by relaxation, as Newton's method did not converge.\n";
   for (const LimitPoint& p : r.limit_points)
     text += p.jump ? format(
                          "  Limit point at load factor {:.6g}, where {}: equilibria beyond it lie "

@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "modes_report.hpp"
+#include "stop_signal.hpp"
 
 namespace polhode::cli {
 
@@ -102,8 +103,11 @@ int run_modes(Model model, const ModelArguments& arguments, std::string folder, 
               bool quiet) {
   if (folder.empty())
     folder = std::filesystem::path(arguments.file).replace_extension(".results").string();
-  const ModalAnalysis analysis(std::move(model));
-  const int code = analysis.converged() ? kOk : kNotConverged;
+  const ModalAnalysis analysis(std::move(model), &stop_wanted);
+  const int code = analysis.converged() ? kOk
+                   : wall_limit_reached ? kLimit
+                   : stop_wanted        ? kInterrupted
+                                        : kNotConverged;
   if (analysis.converged())
     io::write_modes(analysis, folder,
                     {.version = POLHODE_VERSION,

@@ -95,8 +95,12 @@ int run(const RunOptions& options) {
   const double start = wall_clock();
   Model model = load_model(options.model);
   if (options.certify) check_certifiable(model);
-  if (model.analysis.type == "modes")
+  // A load step or the search for modes may take long; steps in time end soon.
+  if (options.wall_limit && model.analysis.type != "dynamics") stop_after(*options.wall_limit);
+  if (model.analysis.type == "modes") {
+    catch_stop_signals();
     return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
+  }
   const std::optional<Model> original = options.certify ? std::optional(model) : std::nullopt;
   std::string note;
   Simulation simulation = make_simulation(options, std::move(model), note);
@@ -143,7 +147,7 @@ int run(const RunOptions& options) {
   save();
   recorder.close();
 
-  int code = exit_code(summary, limit_reached);
+  int code = exit_code(summary, limit_reached || wall_limit_reached);
   if (options.strict && code == kOk && !summary.trusted()) code = kCheckFailed;
   if (!summary.message.empty() && (code == kNotConverged || code == 0)) say(summary.message);
   for (const std::string& warning : summary.warnings) say("warning: " + warning);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <polhode/core/time_jet.hpp>
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/joints/moving_frame.hpp>
 #include <polhode/math/exp_map.hpp>
 
@@ -199,7 +200,8 @@ BodyStep carried_step(const FrameMotion& motion, const JointFrames& frames, cons
   };
   BodyStep s = a;
   s.moves = true;
-  place(motion.at(context.t_n, context.load_factor), a.r_n, a.Lambda_n, s.r_n, s.Lambda_n);
+  place(motion.at(function_time_n(context), load_factor_n(context)), a.r_n, a.Lambda_n, s.r_n,
+        s.Lambda_n);
   place(motion.at(context.t_n1(), context.load_factor), a.r_n1, a.Lambda_n1, s.r_n1, s.Lambda_n1);
   s.u = s.r_n1 - s.r_n;
   const FrameRates rates = frame_rates(motion, frames, a, context, TimeSide::kAfter);
@@ -214,7 +216,7 @@ void move_frame(const FrameMotion& motion, const JointFrames& frames, const Pair
   const StepContext& c = step.context;
   const BodyStep& a = step.a;
   const double af = a.alpha_f;
-  const FrameInBody at_n = in_body(motion.at(c.t_n, c.load_factor), frames),
+  const FrameInBody at_n = in_body(motion.at(function_time_n(c), load_factor_n(c)), frames),
                     at_n1 = in_body(motion.at(c.t_n1(), c.load_factor), frames);
   const Vec3 z_n = a.Lambda_n * at_n.Z, z_n1 = a.Lambda_n1 * at_n1.Z;
   const Mat3 R_n = a.Lambda_n * at_n.R, R_n1 = a.Lambda_n1 * at_n1.R;

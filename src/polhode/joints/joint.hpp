@@ -110,6 +110,15 @@ class Joint : public InteractionItem {
   /// Activates the joint; a fixed joint keeps its sides at their present relative position.
   void switch_on(const PairStep& step, double* history) const;
   [[nodiscard]] bool acceptable(const PairStep& step) const;
+  /// A frame that is driven by whole turns leaves no trace in the rows.
+  [[nodiscard]] bool always_queried() const {
+    return motion_ && motion_->rotation != FrameMotion::Rotation::none;
+  }
+  [[nodiscard]] const char* refusal() const {
+    return always_queried()
+               ? "reached the mirror image of its assembly, or is driven by half a turn in one step"
+               : InteractionItem::refusal();
+  }
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
   [[nodiscard]] Coupling coupling() const {
     return resistance_ || held_by_ || parts_.planes > 0 || parts_.distance ? Coupling::all

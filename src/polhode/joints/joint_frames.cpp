@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of a joint, including one that was switched on at the present position of its bodies.
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/moving_frame.hpp>
 
@@ -38,7 +39,8 @@ Configuration Joint::at_n(const PairStep& step) const {
   Vec3 Z_a = frames.Z_a;
   Mat3 R_a = frames.R_a;
   if (motion_) {
-    const FrameMotion::Placement moved = motion_->at(step.context.t_n, step.context.load_factor);
+    const FrameMotion::Placement moved =
+        motion_->at(function_time_n(step.context), load_factor_n(step.context));
     Z_a += R_a * moved.d;
     R_a *= moved.D;
   }

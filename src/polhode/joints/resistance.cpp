@@ -5,6 +5,7 @@
 
 #include <polhode/contact_laws/bristle.hpp>
 #include <polhode/contact_laws/stop_force.hpp>
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/joints/parts.hpp>
 #include <polhode/joints/parts/link_length.hpp>
 #include <polhode/joints/resistance.hpp>
@@ -123,7 +124,13 @@ Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, 
     step.rate_n1 = slides ? slide_rate(v.q_n1, v.step.a, v.step.b, link)
                           : v.angle[0].rate_at_n1(v.step.a, v.step.b);
   }
-  return {limits, v.memory + memory, step};
+  if (!is_load_step(v.step.context)) return {limits, v.memory + memory, step};
+  // The force is that of the end of the step alone, which may be at the other stop than its start.
+  static constexpr std::array<double, kNumbersOf<StopMemory>> kOpen{};
+  const double nearer = c.at_n1 - limits.lower <= limits.upper - c.at_n1 ? 1.0 : -1.0;
+  const bool closed = read_record<StopMemory>(v.memory + memory).side == nearer;
+  if (!closed) step.at_n = std::clamp(c.at_n1, limits.lower, limits.upper);
+  return {limits, closed ? v.memory + memory : kOpen.data(), step};
 }
 
 Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
@@ -268,7 +275,9 @@ Resistance::Bristle Resistance::bristle(const View& v, const Motion& m) const {
     return b;
   }
   for (int i = 0; i < m.count; ++i) b.moved[i] = m.of[i].lever * (m.of[i].at_n1 - m.of[i].at_n);
-  const double weight = v.step.a.alpha_f + f.damping / (f.stiffness * std::abs(v.step.context.dt));
+  const StepContext& c = v.step.context;
+  const double rate = is_load_step(c) ? 0.0 : 1.0 / std::abs(c.dt);
+  const double weight = v.step.a.alpha_f + f.damping * rate / f.stiffness;
   for (int k = 0; k < cones(); ++k) {
     const Vec3 of_cone = cones() == 1 ? Vec3(Vec3::Ones()) : Vec3(Vec3::Unit(k));
     const Vec3 at_n = b.at_n.cwiseProduct(of_cone), moved = b.moved.cwiseProduct(of_cone);

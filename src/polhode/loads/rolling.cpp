@@ -13,6 +13,16 @@ namespace {
 using contact::Dual;
 using Vector = PairDuals::Vector;
 
+/// Angle over Cayley vector of a step, less one, of the square q of half the Cayley vector:
+/// atan(√q)/√q − 1.
+Dual angle_excess(const Dual& q) {
+  if (q.v < 1e-3)  // the next terms: q⁵/11
+    return q.chained(q.v * (-1.0 / 3.0 + q.v * (0.2 + q.v * (-1.0 / 7.0 + q.v / 9.0))),
+                     -1.0 / 3.0 + q.v * (0.4 + q.v * (-3.0 / 7.0 + q.v * 4.0 / 9.0)));
+  const double root = std::sqrt(q.v), value = std::atan(root) / root;
+  return q.chained(value - 1.0, 0.5 * (1.0 / (1.0 + q.v) - value) / q.v);
+}
+
 }  // namespace
 
 Rolling::Rolling(const LoadDescription& load)
@@ -58,13 +68,24 @@ void Rolling::evaluate(const PairStep& step, PairTerms& t) const {
   const Vector d[3] = {k.mean(alpha), e_1.mean(alpha), e_2.mean(alpha)};
   const double* lambda = step.lambda;
   pair.add(lambda[0] * d[0] + lambda[1] * d[1] + lambda[2] * d[2], arm_a, arm_b, t);
+  // Way of the edge: the angle of the step times the arm, not its longer Cayley vector.
+  const Vector turn =
+      contact::Motion<Dual>(step.b, 6).theta - contact::Motion<Dual>(step.a, 0).theta;
+  const Dual excess = angle_excess(Dual(0.25) * dot(turn, turn));
+  const bool conserving = step.context.conserving;
+  if (conserving)  // the multipliers do no work
+    pair.add_couple(excess * cross(arm_b, lambda[1] * d[1] + lambda[2] * d[2]), t);
 
   const Vector middle = c.mean(0.5) + to_edge(0.5);
-  const Vector slip = pair.slip(middle - r_a.mean(0.5), middle - r_b.mean(0.5));
+  const Vector arm = middle - r_b.mean(0.5);
+  const Vector slip = pair.slip(middle - r_a.mean(0.5), arm) + excess * cross(turn, arm);
   const Dual height = dot(k.at_n1, c.at_n1 - x_a.at_n1) - circle_ * sin_n1 - edge_;
   pair.set_row(0, height, d[0], arm_a, arm_b, t);
-  pair.set_row(1, dot(e_1.mean(0.5), slip), d[1], arm_a, arm_b, t);
-  pair.set_row(2, dot(e_2.mean(0.5), slip), d[2], arm_a, arm_b, t);
+  for (int k = 1; k < 3; ++k) {
+    const Vec3 couple =
+        conserving ? contact::value(excess * cross(arm_b, d[k])) : Vec3(Vec3::Zero());
+    pair.set_row(k, dot((k == 1 ? e_1 : e_2).mean(0.5), slip), d[k], arm_a, arm_b, t, couple);
+  }
   clear_ground_sides(step, t);
 }
 

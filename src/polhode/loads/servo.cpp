@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/loads/force_law.hpp>
 #include <polhode/loads/servo.hpp>
 
@@ -42,7 +43,8 @@ Servo::Command Servo::command(const PairStep& step, const CoordinateMotion& q) c
     u.error_n1 = step.history[kError] + way - (q.at_n1 - q.at_n);
     u.error = step.history[kError] + af * way - (q.at_alpha - q.at_n);
   } else {
-    wanted_rate = c.load_factor * (still ? from.rate : (to.value - from.value) / c.dt);
+    if (!is_load_step(c))
+      wanted_rate = c.load_factor * (still ? from.rate : (to.value - from.value) / c.dt);
     u.error_n1 = c.load_factor * to.value - q.at_n1;
     u.error = c.load_factor * ((1.0 - af) * from.value + af * to.value) - q.at_alpha;
   }

@@ -58,7 +58,7 @@ Model static_model(Model model) {
 
 }  // namespace
 
-ModalAnalysis::ModalAnalysis(Model model) {
+ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
   const double wall = wall_clock(), cpu = cpu_clock();
   const AnalysisSpec analysis = model.analysis;
   ModeOptions options;
@@ -72,10 +72,12 @@ ModalAnalysis::ModalAnalysis(Model model) {
     const InstantSolution now = InstantSolver(simulation_->system()).accelerations(state);
     if (now.solved) state.lambda = now.lambda;
   } else {
-    const RunSummary summary = simulation_->run();
+    const RunSummary summary = simulation_->run({}, {}, stop);
     if (summary.end != RunEnd::finished) message_ = summary.message;
     state = simulation_->state();
   }
+  if (message_.empty() && stop && stop->load())
+    message_ = "Stopped before modes were computed. Allow more time, or ask for fewer modes";
   if (message_.empty()) {
     report_ = find_modes(simulation_->system(), state, options);
     if (report_.unbalanced > kUnbalanced)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,7 +20,8 @@ class ModalAnalysis {
  public:
   /// @throws InputError if the model cannot be built or its start not assembled, or if a centre of
   ///         mass or a solid has a velocity.
-  explicit ModalAnalysis(Model model);
+  /// @param stop  Ends the search for the equilibrium when it becomes true; null: never.
+  explicit ModalAnalysis(Model model, const std::atomic<bool>* stop = nullptr);
 
   /// Whether an equilibrium was found; if not, message() says why, and there are no modes.
   [[nodiscard]] bool converged() const { return message_.empty(); }

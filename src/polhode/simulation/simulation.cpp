@@ -100,12 +100,17 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   if (s.state.ledger.steps == 0) look();
   s.figures.end = RunEnd::finished;
   double next = output_after(s.state.t);
+  if (s.statics) s.statics->set_stop(stop);
   while (s.state.t < end * (1.0 - kSameTime) && !s.stopped()) {
     if (stop && stop->load()) {
       s.figures.end = RunEnd::interrupted;
       break;
     }
     StepReport report = advance(automatic ? std::min(next, end) : end);
+    if (!report.accepted && stop && stop->load()) {
+      s.figures.end = RunEnd::interrupted;
+      break;
+    }
     if (!report.accepted) {
       explain(s.model, s.state, s.statics != nullptr, report);
       s.figures.end = RunEnd::not_converged;

@@ -159,6 +159,7 @@ bool Simulation::let_events_come(StepReport& report) {
       if (!at_start && (!event.on.empty() || !event.off.empty())) {
         done = s.stepper->switch_over(s.state, events.on(e), events.off(e));
         s.forget_instant();
+        if (s.statics) s.statics->switched(s.state);
       }
       if (done.worst >= 0 || !done.solved) {
         report.accepted = false;

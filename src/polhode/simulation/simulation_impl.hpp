@@ -135,12 +135,12 @@ struct Simulation::Impl {
   }
 
   /// End time of the run; in statics the full load.
-  [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
+  [[nodiscard]] double end() const { return statics ? statics->end() : model.analysis.duration; }
 
-  /// Takes a step in time; settle_step() follows once it is final.
+  /// Takes a step in time, or a load step; settle_step() follows once it is final.
   StepReport take(double t_limit) {
     forget_reports();
-    StepReport report = stepper->advance(state, t_limit);
+    StepReport report = statics ? take_load_step(t_limit) : stepper->advance(state, t_limit);
     if (report.accepted && report.dt != 0.0) contacts.see(state);
     return report;
   }
@@ -218,16 +218,16 @@ struct Simulation::Impl {
   [[nodiscard]] bool stopped() const { return events && events->stopped(state) >= 0; }
 
   StepReport advance(double t_limit) {
-    if (!statics) {
-      StepReport report = take(t_limit);
-      if (report.accepted && report.dt != 0.0) settle_step();
-      return report;
-    }
+    StepReport report = take(t_limit);
+    if (report.accepted && report.dt != 0.0) settle_step();
+    return report;
+  }
+  StepReport take_load_step(double t_limit) {
     const double before = state.t;
     const std::size_t tried = statics->report().steps.size();
     const int iterations = statics->report().iterations;
     StepReport report;
-    report.accepted = statics->advance(state, std::min(t_limit, 1.0));
+    report.accepted = statics->advance(state, std::min(t_limit, end()));
     const StaticReport& r = statics->report();
     report.t = state.t;
     report.dt = state.t - before;

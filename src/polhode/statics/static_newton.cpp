@@ -4,11 +4,13 @@
 #include <limits>
 
 #include <polhode/core/format.hpp>
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/equations/line_search.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/math/quaternion.hpp>
 #include <polhode/statics/static_newton.hpp>
+#include <polhode/system/lane_access.hpp>
 
 namespace polhode {
 
@@ -23,14 +25,10 @@ constexpr double kRotationCap = 1.9;
 constexpr double kStaticDiverged = 1e6;
 /// Increment below which stagnation is rounding, if the residual is at rounding too.
 constexpr double kClose = 1e-5;
+/// Cosine of half a rotation by half a turn: its Cayley vector is not finite [-].
+constexpr double kHalfTurn = 1e-8;
 /// Residual of a constraint that counts as satisfied [m or -].
 constexpr double kAssembled = 1e-13;
-
-GeneralizedAlpha static_weights() {
-  GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
-  ga.alpha_m = ga.kappa = ga.c = ga.c_A = ga.delta = 0.0;
-  return ga;
-}
 
 }  // namespace
 
@@ -45,7 +43,7 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
   mixed_ = options.mixed_point;
   nodes_.set_static(true, mixed_);
   here_.assign(nodes.pieces().size(), Mat3::Identity());
-  trial_.context.ga = static_weights();
+  trial_.context.ga = load_step_weights();
   trial_.context.conserving = false;
   trial_.context.dt = 1.0;
   trial_.compliance_scale = 1.0;
@@ -63,12 +61,41 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
     if (const ChangingSparsity* pattern = nodes.group(g).changing_sparsity())
       meetings_.push_back({pattern, nodes.group(g).barrier_constraint(),
                            static_cast<std::size_t>(nodes.first_history(g))});
+    else if (nodes.group(g).barrier_constraint())
+      shapes_.push_back(g);
 }
 
-void StaticNewton::enter(double load_factor) {
+/// Sets the times of the step: they are the load factors. At an instant the step has a length all
+/// the same, over which nothing moves.
+void StaticNewton::enter(double load_factor, double last) {
   StepContext& c = trial_.context;
-  c.load_factor = load_factor;
-  c.t_n = load_factor - c.dt;  // so that t_{n+1} is the load factor
+  const bool follows = options_.history > 0.0;
+  const double t = follows ? std::max(load_factor, 0.0) : load_factor;
+  const bool grows = !follows || load_factor < 0.0 || last < 0.0;
+  c.load_factor = follows ? std::min(1.0 + load_factor, 1.0) : load_factor;
+  c.dt = load_factor != last ? load_factor - last : 1.0;
+  c.ga.delta = grows && load_factor != last ? 1.0 : 0.0;
+  c.t_n = t - c.dt;
+}
+
+/// Begins a search from the equilibrium of a state.
+void StaticNewton::start_at(const State& state) { work_ = last_ = state; }
+
+/// Puts the bodies of work_ into the trial. θ is not bounded: a load step may turn a body by half a
+/// turn and more.
+void StaticNewton::place_bodies() {
+  for (int b = 0; b < system_->body_count(); ++b) {
+    const int slot = system_->slot(b), lane = slot % kLanes;
+    TrialBlock& t = trial_.blocks[slot / kLanes];
+    const BodyMotion m = system_->motion(work_, b), m_n = system_->motion(last_, b);
+    const Quat turned = m.q * m_n.q.conjugate();
+    const double w =
+        std::abs(turned.w()) < kHalfTurn ? std::copysign(kHalfTurn, turned.w()) : turned.w();
+    put(t.u, lane, Vec3(m.r - m_n.r));
+    put(t.theta, lane, Vec3(2.0 / w * turned.vec()));
+    put(t.r, lane, m.r);
+    put(t.Lambda, lane, m.Lambda());
+  }
 }
 
 void StaticNewton::start_scratch(const State& state) {
@@ -83,8 +110,9 @@ void StaticNewton::start_scratch(const State& state) {
 
 /// Residual and tangent at work_. @eq{statics-residual}
 ElementReport StaticNewton::assemble() {
-  start_trial(*system_, work_, trial_);
-  trial_.lambda_centre = trial_.lambda;
+  start_trial(*system_, last_, trial_);
+  place_bodies();
+  trial_.lambda_centre = trial_.lambda = work_.lambda;
   trial_.node_x = work_.node_x;
   trial_.context.mixed_point = mixed_;
   ElementReport report;
@@ -96,7 +124,9 @@ ElementReport StaticNewton::assemble() {
     if (!(report.least_volume > 0.0)) return report;
     if (matrix_.set_moving(nodes_.moving())) solver_.forget();
   }
-  newton_.assemble(work_, trial_, true);
+  std::swap(last_.history, work_.history);
+  newton_.assemble(last_, trial_, true);
+  std::swap(last_.history, work_.history);
   const double s = scale();
   matrix_.place(trial_);
   matrix_.set(newton_.values(), nodes_.tangent(), nodes_.residual().data(), s);
@@ -210,8 +240,8 @@ double StaticNewton::apply(double part, StaticStep& step) {
     const auto of = [&](int body) -> Vec6 {
       return body == kGround ? Vec6::Zero() : Vec6(x_.segment<6>(6 * body));
     };
-    const BodyStep a = body_step(*system_, work_, trial_, ref.a);
-    const BodyStep b = body_step(*system_, work_, trial_, ref.b);
+    const BodyStep a = body_step(*system_, last_, trial_, ref.a);
+    const BodyStep b = body_step(*system_, last_, trial_, ref.b);
     double* history = work_.history.data() + ref.first_history;
     const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row, history};
     system_->group(ref.group).extrapolate(ref.item, pair, of(ref.a), of(ref.b), history);
@@ -294,9 +324,10 @@ bool StaticNewton::search(double most, StaticStep& step, ElementReport& elements
 StaticStep StaticNewton::solve(State& state, double load_factor, const State* start) {
   StaticStep step;
   step.load_factor = load_factor;
-  enter(load_factor);
-  if (start && free_part(state, state.node_x.data(), start->node_x.data()) < 1.0) start = nullptr;
-  work_ = start ? *start : state;
+  enter(load_factor, state.t);
+  start_at(state);
+  if (start && free_part(state.node_x.data(), start->node_x.data()) < 1.0) start = nullptr;
+  if (start) work_ = *start;
   x_before_.clear();
   kinks_.clear();
   resisted_ = shifted_ = false;
@@ -328,6 +359,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
       if (balance == Balance::rounded && e < kClose) break;  // no further improvement
     }
     if (arrived && balanced_on_a_kink(step)) break;
+    if (stopped()) return fail("stopped");
     if (step.iterations == options_.max_iterations)
       return fail(format("has not converged in {} iterations", options_.max_iterations));
     ++step.iterations;
@@ -359,17 +391,39 @@ void StaticNewton::assemble_unmixed() {
   nodes_.set_static(true, mixed_);
 }
 
-/// Reason why interactions reject a configuration: mirror images, beams bent too far.
-std::string StaticNewton::refused(StaticStep& step) const {
+/// Whether the bodies of an interaction that follows their rotation over the step have turned
+/// relative to each other by half a turn or more: the nearest of the turns is then another one.
+/// Quaternions keep their sign from iterate to iterate, so that they tell more than half a turn
+/// from less.
+bool StaticNewton::turns_too_far(const InteractionRef& ref) const {
+  const InteractionTraits& traits = system_->traits(ref);
+  if (traits.lazy_history || (traits.history_size == 0 && traits.rows == 0)) return false;
+  const auto turned = [&](int body) {
+    if (body == kGround) return Quat::Identity();
+    return Quat(system_->motion(work_, body).q * system_->motion(last_, body).q.conjugate());
+  };
+  return turned(ref.a).coeffs().dot(turned(ref.b).coeffs()) <= 0.0;
+}
+
+/// Reason why a load step is rejected: mirror images, beams bent too far, more than half a turn,
+/// shapes passed through.
+std::string StaticNewton::refused(StaticStep& step) {
+  step.worst.clear();
   for (const InteractionRef& ref : system_->interactions()) {
     const InteractionGroup& group = system_->group(ref.group);
-    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    const BodyStep a = body_step(*system_, last_, trial_, ref.a),
+                   b = body_step(*system_, last_, trial_, ref.b);
     const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row,
                         work_.history.data() + ref.first_history};
-    if (group.acceptable(ref.item, pair)) continue;
-    step.worst.clear();
-    return format("{} '{}': {}", group.kind(), system_->name(ref), group.traits(ref.item).refusal);
+    const bool too_far = turns_too_far(ref);
+    if (!too_far && group.acceptable(ref.item, pair)) continue;
+    return format("{} '{}': {}", group.kind(), system_->name(ref),
+                  too_far ? "turned by half a turn or more in one load step"
+                          : group.traits(ref.item).refusal);
   }
+  if (const int g = passed_shape(); g >= 0)
+    return format("contact of '{}': a point passed through a shape",
+                  system_->nodes().group(g).name());
   return {};
 }
 
@@ -377,7 +431,8 @@ void StaticNewton::commit(State& state, double load_factor) {
   const Nodes& nodes = system_->nodes();
   for (const InteractionRef& ref : system_->interactions()) {
     if (system_->traits(ref).history_size == 0) continue;
-    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    const BodyStep a = body_step(*system_, last_, trial_, ref.a),
+                   b = body_step(*system_, last_, trial_, ref.b);
     double* history = work_.history.data() + ref.first_history;
     system_->group(ref.group).commit(
         ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
@@ -392,12 +447,12 @@ void StaticNewton::commit(State& state, double load_factor) {
   }
   work_.t = load_factor;
   held_ = nodes_.residual();
-  state = work_;
+  state = last_ = work_;
 }
 
 void StaticNewton::assemble_at(const State& state, double load_factor) {
-  enter(load_factor);
-  work_ = state;
+  enter(load_factor, load_factor);
+  start_at(state);
   start_scratch(work_);
   choose_scale();
   assemble_unmixed();

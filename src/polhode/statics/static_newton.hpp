@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,15 @@ namespace polhode {
 struct StaticOptions {
   /// Equal load increments; 0: chosen by the convergence of Newton's method.
   int load_steps = 0;
+  /// End of a history of loads, which follows functions of time as they stand [s]; 0: all loads
+  /// grow to their full size.
+  double history = 0.0;
   int max_iterations = 25;   ///< Before a load step is reduced.
   double tolerance = 1e-10;  ///< On the sum of further increments, |Δr|/ℓ or |Δθ| [-].
   double residual = 1e-9;    ///< Tolerated unbalanced force, as a part of the largest force [-].
   bool mixed_point = true;   ///< Geometric stiffness by extrapolated stresses.
+  /// Ends the search when it becomes true, without an equilibrium; null: never.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// Motion with the smallest stiffness at an equilibrium.
@@ -30,19 +36,25 @@ struct SoftestMotion {
 
 /// Newton's method for the equilibrium of bodies, joints, springs, beams and solids: one matrix of
 /// all unknowns, without inertia and velocities. Rotations are composed iteration by iteration, so
-/// that a load step may rotate bodies by any angle. Derivation: docs/theory/statics_and_modes.md.
+/// that a load step may rotate bodies by any angle. Interactions see the step from the last
+/// equilibrium, t_n, to the iterate, t_{n+1}. Derivation: docs/theory/statics_and_modes.md.
 class StaticNewton {
  public:
   StaticNewton(const System& system, const StaticOptions& options);
 
   /// Solves for the equilibrium of the state's bodies and nodes at a load factor, starting from
   /// `start` if given (a predicted state), else from the state itself. On failure the state is
-  /// unchanged.
+  /// unchanged. In a history the load factor is a time, and below zero it is one more than the
+  /// factor of the loads at its start.
   StaticStep solve(State& state, double load_factor, const State* start = nullptr);
 
   /// Solves by relaxation: the state moves downhill in small steps, also with slack or yielding
   /// parts, until Newton's method finds a nearby equilibrium. Derivation: @eq{statics-relaxation}
-  StaticStep relax(State& state, double load_factor);
+  /// @param slack  Parts may fall before they carry load. Otherwise the search ends where a motion
+  /// of half the model's size meets no resistance.
+  StaticStep relax(State& state, double load_factor, bool slack);
+  /// Sets StaticOptions::stop.
+  void set_stop(const std::atomic<bool>* stop) { options_.stop = stop; }
 
   /// Assembles tangent and residual at a state, all loads times the load factor.
   void assemble_at(const State& state, double load_factor);
@@ -63,7 +75,10 @@ class StaticNewton {
  private:
   /// Unbalanced, within the tolerance, or balanced to rounding.
   enum class Balance { off, within, rounded };
-  void enter(double load_factor);
+  [[nodiscard]] bool stopped() const { return options_.stop && options_.stop->load(); }
+  void enter(double load_factor, double last);
+  void start_at(const State& state);
+  void place_bodies();
   void start_scratch(const State& state);
   ElementReport assemble();
   void choose_scale();
@@ -81,12 +96,14 @@ class StaticNewton {
   void assemble_unmixed();
   void aim(std::vector<double>& du) const;
   void look_for_neighbours();
-  [[nodiscard]] double free_part(const State& at, const double* from, const double* to) const;
+  [[nodiscard]] double free_part(const double* from, const double* to) const;
+  [[nodiscard]] int passed_shape() const;
   [[nodiscard]] double free_part_of_increment();
   double apply(double part, StaticStep& step);
   [[nodiscard]] bool search(double most, StaticStep& step, ElementReport& elements);
   void commit(State& state, double load_factor);
-  [[nodiscard]] std::string refused(StaticStep& step) const;
+  [[nodiscard]] std::string refused(StaticStep& step);
+  [[nodiscard]] bool turns_too_far(const InteractionRef& ref) const;
   void count_unstable(StaticStep& step);
 
   const System* system_;
@@ -98,6 +115,7 @@ class StaticNewton {
   SaddleSolver solver_;
   Trial trial_;
   State work_;
+  State last_;  ///< At t_n; its history is not used: that of the iterations is in work_.
   std::vector<Mat3> here_;     ///< No connected component has rotated since its condensation.
   Vec x_, rhs_, noise_;        ///< Increment; negative residual; its rounding. All scaled.
   std::vector<Vec6> moments_;  ///< Residual of bodies with the nodes bonded to them, scaled.
@@ -109,6 +127,7 @@ class StaticNewton {
     std::size_t first_history;
   };
   std::vector<Meeting> meetings_;
+  std::vector<int> shapes_;       ///< Element groups of contacts with rigid shapes.
   std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
   std::vector<Vec> free_;         ///< Orthonormal, see keep_free(); of the last factorisation.
   ClarkeCombination kinks_;       ///< Residuals of iterates with small increments.

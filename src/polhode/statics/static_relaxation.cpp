@@ -19,6 +19,10 @@ constexpr double kEase = 0.5, kBrake = 1.5;
 /// steps between trials.
 constexpr double kSmallSpeed = 1e-3;
 constexpr int kTries = 50;
+/// Number of steps, about half the model's size, after which the unbalanced force of a model
+/// without slack parts has to be below this part of the first one.
+constexpr int kLook = 25;
+constexpr double kSameForce = 0.999;
 
 }  // namespace
 
@@ -32,11 +36,11 @@ std::vector<double> StaticNewton::all_diagonal(double stiffness) const {
 }
 
 /// @eq{statics-relaxation}
-StaticStep StaticNewton::relax(State& state, double load_factor) {
+StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
   StaticStep step;
   step.load_factor = load_factor;
-  enter(load_factor);
-  work_ = state;
+  enter(load_factor, state.t);
+  start_at(state);
   x_before_.clear();
   kinks_.clear();
   start_scratch(work_);
@@ -52,8 +56,8 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
   };
   const int bodies = 6 * system_->body_count();
   const double length = system_->length_scale();
-  double resistance = 0.0;
-  for (int k = 0; k < kMaxSteps; ++k) {
+  double resistance = 0.0, first_force = 0.0;
+  for (int k = 0; k < kMaxSteps && !stopped(); ++k) {
     if (!(assemble().least_volume > 0.0)) break;
     aim(given_);
     ++step.iterations;
@@ -63,6 +67,9 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
             std::max(resistance, std::abs(rhs_[i]) / (i < bodies && i % 6 >= 3 ? length : 1.0));
       resistance /= kMove * length;
     }
+    measure(step);
+    if (k == 0) first_force = step.residual;
+    if (!slack && k == kLook && step.residual > kSameForce * first_force) break;
     if (!(resistance > 0.0)) break;
     if (!solver_.factor(matrix_, make_symmetric(), all_diagonal(resistance))) {
       resistance *= kBrake;
@@ -79,6 +86,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
     resistance *= std::clamp(move / kMove, kEase, kBrake);
     if ((move < kSmallSpeed && k % 5 == 4) || k % kTries == kTries - 1) {
       const State here = work_;
+      const State from = last_;
       State near = here;
       mixed_ = mixed;
       nodes_.set_static(true, mixed_);
@@ -91,6 +99,8 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
       mixed_ = false;  // it diverged: continue from its start
       nodes_.set_static(true, false);
       work_ = here;
+      last_ = from;
+      enter(load_factor, from.t);
       start_scratch(work_);
     }
   }

@@ -33,7 +33,8 @@ struct LimitPoint {
 /// Report of a static analysis.
 struct StaticReport {
   bool converged = false;              ///< The full load is carried.
-  double load_factor = 0.0;            ///< Reached, in [0, 1].
+  double load_factor = 0.0;            ///< Reached, in [0, 1]; in a history the time [s].
+  double history = 0.0;                ///< End of a history [s]; 0: none.
   std::vector<StaticStep> steps;       ///< All trials, in order.
   int iterations = 0;                  ///< Of all trials.
   double residual = 0.0, force = 0.0;  ///< Largest unbalanced and largest force at the end [N].

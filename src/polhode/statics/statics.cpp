@@ -10,6 +10,7 @@
 #include <polhode/statics/static_branches.hpp>
 #include <polhode/statics/statics.hpp>
 #include <polhode/stepping/start.hpp>
+#include <polhode/system/time_breaks.hpp>
 
 namespace polhode {
 
@@ -20,8 +21,12 @@ namespace {
 constexpr int kEasy = 6, kHard = 12;
 /// Factor on the increment after a failure, and its smallest value.
 constexpr double kCut = 0.25, kMinIncrement = 1e-4;
-/// Difference of load factors below which they are equal.
+/// Difference of load factors, or of times over that of the history, below which they are equal.
 constexpr double kSame = 1e-12;
+/// Number of steps of a history without load_steps, at least.
+constexpr double kHistorySteps = 10.0;
+/// Part of an increment by which it is lengthened to end at a given load factor or time.
+constexpr double kReachesLimit = 0.01;
 /// Distance of a load step, relative to the expected one, above which it may have left its branch,
 /// as after many iterations; and distance below which this is not checked [-].
 constexpr double kFar = 3.0, kNear = 0.02;
@@ -50,9 +55,38 @@ struct LoadStepper::Impl {
   double factor_before = 0.0;
   double increment = 1.0;
   int equilibria = 0, unstable = -1;
-  bool relaxed = false;
+  bool relaxed = false, no_start = false;
+  std::optional<TimeBreaks> breaks;  ///< Of a history.
 
-  Impl(const System& s, const StaticOptions& o) : system(&s), options(o), newton(s, o) {}
+  Impl(const System& s, const StaticOptions& o) : system(&s), options(o), newton(s, o) {
+    if (follows()) breaks.emplace(s, options.history);
+    report.history = options.history;
+    increment = longest();
+  }
+
+  [[nodiscard]] bool follows() const { return options.history > 0.0; }
+  [[nodiscard]] double end() const { return follows() ? options.history : 1.0; }
+  /// Largest increment, and the first one.
+  [[nodiscard]] double longest() const {
+    if (options.load_steps > 0) return end() / options.load_steps;
+    return follows() ? end() / kHistorySteps : 1.0;
+  }
+  /// Size of the load factor or time: the loads at the start of a history grow from −1 to 0.
+  [[nodiscard]] double size(double from) const { return from < 0.0 ? 1.0 : end(); }
+  /// End of the next step with this increment.
+  double next_factor(double from, double limit) {
+    if (!follows()) {
+      const double factor = std::min(from + increment, limit);
+      return limit - factor < kSame ? limit : factor;
+    }
+    double way = increment;
+    if (from >= 0.0) {
+      way = std::min(way, longest());
+      if (const TimeBreak next = breaks->next(from); next.exists()) limit = std::min(limit, next.t);
+      way = breaks->sampled_length(from, way, 1.0);
+    }
+    return from + (1.0 + kReachesLimit) * way >= limit ? limit : from + way;
+  }
 
   /// The state on the secant through the last two equilibria.
   [[nodiscard]] State secant(const State& state, double factor) const {
@@ -135,13 +169,53 @@ struct LoadStepper::Impl {
     return list;
   }
 
+  [[nodiscard]] bool stopped() const { return options.stop && options.stop->load(); }
+
+  void accept(State old, double from, const State& state, const StaticStep& step, double expected) {
+    bool known = equilibria > 0;
+    if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
+      State unloaded = old;
+      const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
+      known = none.converged;
+      if (known) {  // which unloaded parts are stable?
+        unstable = none.unstable;
+        old = unloaded;
+      }
+    }
+    if (known) look_between(old, from, state, step, expected);
+    report.slack = slack_cables(state);
+    if (step.unstable >= 0) unstable = step.unstable;
+    before = std::move(old);
+    factor_before = from;
+    ++equilibria;
+    report.load_factor = step.load_factor;
+    report.converged = step.load_factor >= end() * (1.0 - kSame);
+    if (options.load_steps > 0 || step.relaxed) return;
+    if (step.iterations <= kEasy) increment *= 2.0;
+    if (step.iterations >= kHard) increment *= 0.5;
+  }
+
+  /// Goes downhill to an equilibrium where Newton's method finds none near the start: that is no
+  /// equilibrium whatever the load, or has no stiffness, as a toggle at its dead centre. There is
+  /// no branch yet that would be left.
+  bool goes_down(State& state, double factor) {
+    if (equilibria > 0 || relaxed) return false;
+    const State old = state;
+    StaticStep step = newton.relax(state, factor, false);
+    take(step);
+    if (!step.converged) return false;
+    ++report.relaxations;
+    increment = factor - old.t;
+    accept(old, old.t, state, step, 0.0);
+    return true;
+  }
+
   bool advance(State& state, double limit) {
-    const double from = state.t;
+    const double from = state.t, first = increment;
     for (;;) {
-      double factor = std::min(from + increment, limit);
-      if (limit - factor < kSame) factor = limit;
+      const double factor = next_factor(from, limit);
       StaticStep step;
-      const bool predict = equilibria > 1 && from - factor_before > kSame;
+      const bool predict = equilibria > 1 && from - factor_before > kSame * size(from);
       State old = state;
       double expected = 0.0;
       if (predict) {
@@ -155,39 +229,22 @@ struct LoadStepper::Impl {
         if (!step.converged && !relaxed && !slack_cables(state).empty()) {
           take(step);
           relaxed = true;  // once: slack parts remain slack
-          step = newton.relax(state, factor);
+          step = newton.relax(state, factor, true);
           if (step.converged) ++report.relaxations;
         }
         if (!step.increments.empty()) expected = std::max(expected, step.increments.front());
       }
       take(step);
       if (step.converged) {
-        bool known = equilibria > 0;
-        if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
-          State unloaded = old;
-          const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
-          known = none.converged;
-          if (known) {  // which unloaded parts are stable?
-            unstable = none.unstable;
-            old = unloaded;
-          }
-        }
-        if (known) look_between(old, from, state, step, expected);
-        report.slack = slack_cables(state);
-        if (step.unstable >= 0) unstable = step.unstable;
-        before = std::move(old);
-        factor_before = from;
-        ++equilibria;
-        report.load_factor = factor;
-        report.converged = factor >= 1.0;
-        if (options.load_steps == 0) {
-          if (step.iterations <= kEasy) increment *= 2.0;
-          if (step.iterations >= kHard) increment *= 0.5;
-        }
+        accept(std::move(old), from, state, step, expected);
         return true;
       }
+      if (stopped()) return false;
       increment = kCut * (factor - from);
-      if (increment < kMinIncrement) {
+      if (increment >= kMinIncrement * size(from)) continue;
+      increment = first;
+      if (goes_down(state, next_factor(from, limit))) return true;
+      {
         std::string soft;
         if (equilibria > 0) {
           newton.assemble_at(state, from);
@@ -202,7 +259,12 @@ struct LoadStepper::Impl {
   /// Adds an explanation. @param soft  Motion with the smallest stiffness at the last equilibrium.
   void explain(const StaticStep& step, const std::string& soft) {
     std::string& s = report.message;
-    s = format("No equilibrium was found beyond load factor {:.6g}: {}", report.load_factor,
+    const double at = report.load_factor;
+    s = format("No equilibrium was found {}: {}",
+               !follows() ? format("beyond load factor {:.6g}", at)
+               : at >= 0.0
+                   ? format("after t = {:.6g} s", at)
+                   : format("beyond {:.6g} of the loads at the start of the history", 1.0 + at),
                step.reason);
     if (!step.worst.empty()) s += format("; worst at {}", step.worst);
     if (step.force > 0.0)
@@ -222,7 +284,7 @@ struct LoadStepper::Impl {
       if (!soft.empty()) s += format("; the stiffness is smallest where {}", soft);
       s += ": look at the last equilibrium, or follow the motion with type: dynamics.";
     } else {
-      s += " Try load_steps, or check that the model is constrained.";
+      s += " Check loads, limits and drives there, or follow the motion with type: dynamics.";
     }
   }
 };
@@ -238,15 +300,36 @@ void LoadStepper::begin(State& state) {
   stop_moving(*s.system, state);
   initialize_histories(*s.system, state);
   std::fill(state.lambda.begin(), state.lambda.end(), 0.0);
-  state.t = 0.0;
+  state.t = s.follows() ? -1.0 : 0.0;
   s.report = StaticReport{};
-  s.increment = s.options.load_steps > 0 ? 1.0 / s.options.load_steps : 1.0;
+  s.report.history = s.options.history;
+  s.report.load_factor = state.t;
+  s.increment = s.follows() ? 1.0 : s.longest();
   s.equilibria = 0;
   s.unstable = -1;
+  s.relaxed = s.no_start = false;
+  if (!s.follows()) return;
+  while (state.t < 0.0 && s.advance(state, 0.0)) {
+  }
+  s.no_start = state.t < 0.0;
+  state.t = 0.0;
+  s.report.load_factor = 0.0;
+  s.report.converged = false;
+  s.equilibria = std::min(s.equilibria, 1);  // no secant leads on from the loads at the start
+  s.increment = s.longest();
+}
+
+void LoadStepper::switched(State& state) {
+  Impl& s = *impl_;
+  stop_moving(*s.system, state);
+  s.equilibria = 0;  // another branch, which may be far
   s.relaxed = false;
 }
 
-bool LoadStepper::advance(State& state, double limit) { return impl_->advance(state, limit); }
+bool LoadStepper::advance(State& state, double limit) {
+  return !impl_->no_start && impl_->advance(state, limit);
+}
+double LoadStepper::end() const { return impl_->end(); }
 double LoadStepper::strain_energy(const State& state) const {
   const System& system = *impl_->system;
   StepContext still;
@@ -267,6 +350,11 @@ double LoadStepper::strain_energy(const State& state) const {
                        state.element_history.data() + nodes.first_history(g), nullptr)
                  .stored;
   return sum;
+}
+
+void LoadStepper::set_stop(const std::atomic<bool>* stop) {
+  impl_->options.stop = stop;
+  impl_->newton.set_stop(stop);
 }
 
 const StaticReport& LoadStepper::report() const { return impl_->report; }

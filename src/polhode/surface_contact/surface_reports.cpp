@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/surface_contact/conservative_advancement.hpp>
 #include <polhode/surface_contact/line_stretch.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
@@ -17,6 +18,9 @@ constexpr double kFarReport = 10.0;
 /// Displacement, over the pass-through depth, below which it cannot pass through.
 constexpr double kThroughBeam = 2.0;
 constexpr int kHalvings = 6;
+/// Cosine between the ways out of a shape below which they are opposite: less than zero, as those
+/// of neighbouring faces of a box are at right angles.
+constexpr double kOpposite = -1e-6;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -59,12 +63,42 @@ bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
 }
 
 /// Admissible part of a displacement. The gap changes by at most the displacement in the surface's
-/// coordinates.
+/// coordinates. Iterates of statics may be within the shape, but no point leaves it on another side
+/// than that on which it was at the last equilibrium: where the straight way since then leads
+/// through the shape, and the ways out of it at both ends are opposite. A way around a corner or a
+/// round side turns them by less than a right angle in a load step short enough.
 double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
                                  const double* /*history*/) const {
+  const double band = 2.0 * law_.normal.tolerance;
+  if (is_load_step(from.context)) {
+    const auto out = [&](const Vec3& y) {
+      return gap(y, {.law = law_.normal, .sided = true}).normal;
+    };
+    const auto passes = [&](const Vec3& y_n, const Vec3& y) {
+      const Vec3 way = y - y_n;
+      const double length = way.norm();
+      if (length < band) return false;
+      bool enters = false;
+      double part = 0.0;
+      for (int k = 0; !enters && part < 1.0; ++k) {
+        const double outside =
+            distance(y_n + part * way, (1.0 - part) * length + band, true) + band;
+        enters = outside <= kLeave * band || k == kMaxAdvances;
+        part += outside / length;
+      }
+      return enters && out(y_n).dot(out(y)) < kOpposite;
+    };
+    double most = 1.0;
+    for (int i = 0; i < size(); ++i) {
+      const Vec3 y_n = local(from.x_n, i), start = local(from.x_n1, i);
+      const Vec3 way = local(to.x_n1, i) - start;
+      for (int k = 0; k < kHalvings && passes(y_n, start + most * way); ++k) most *= 0.5;
+    }
+    return most;
+  }
   if (law_.normal.is_spring()) return 1.0;
   double most = free_of_stretch(from, to);
-  const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
+  const double floor = law_.normal.floor();
   for (int i = 0; i < size(); ++i) {
     const Vec3 start = local(from.x_n1, i), way = local(to.x_n1, i) - start;
     const double length = way.norm();

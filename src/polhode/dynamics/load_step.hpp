@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include <polhode/dynamics/body_step.hpp>
+
+namespace polhode {
+
+/// Weights of a load step, which leads from one equilibrium to the next: forces at its end, no
+/// rates of momentum, no velocities. δ has no other use there: it is the growth of the load
+/// factor over the step, by its length.
+[[nodiscard]] inline GeneralizedAlpha load_step_weights() {
+  GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
+  ga.alpha_m = ga.kappa = ga.c = ga.c_A = ga.delta = 0.0;
+  return ga;
+}
+
+/// Whether this is a load step: its increments are no velocities.
+[[nodiscard]] inline bool is_load_step(const StepContext& c) { return c.ga.kappa == 0.0; }
+
+/// Load factor of the last equilibrium [-].
+[[nodiscard]] inline double load_factor_n(const StepContext& c) {
+  return is_load_step(c) ? c.load_factor - c.ga.delta * c.dt : c.load_factor;
+}
+
+/// Time at which functions are evaluated for t_n [s].
+[[nodiscard]] inline double function_time_n(const StepContext& c) {
+  return is_load_step(c) ? std::max(c.t_n, 0.0) : c.t_n;
+}
+
+}  // namespace polhode
