@@ -410,9 +410,11 @@ class Builder {
       throw InputError("controllers", "act in time, which statics and modes do not have",
                        "Leave them out, or use type: dynamics");
     if (map_.events.empty()) return;
-    if (model_.analysis.type != "dynamics")
-      throw InputError("events", "occur in time, which statics and modes do not have",
-                       "Leave what they switch off out of the model, or use type: dynamics");
+    if (model_.analysis.type != "dynamics" && !model_.analysis.history)
+      throw InputError("events",
+                       "occur in time, which statics without a history and modes do not have",
+                       "Leave what they switch off out of the model, give analysis.history, or use "
+                       "type: dynamics");
     const auto each = [&](const EventSpec& event, const std::vector<std::string>& names,
                           Switching how) {
       for (const std::string& name : names) {

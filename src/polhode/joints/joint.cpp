@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <numbers>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/joints/driven_turn.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/math/exp_map.hpp>
 
@@ -272,7 +270,7 @@ auto Joint::with_sides(const PairStep& step, With&& with) const {
 }
 
 bool Joint::acceptable(const PairStep& step) const {
-  if (motion_ && driven_turn(*motion_, step.context) >= std::numbers::pi) return false;
+  if (motion_ && is_driven_half_a_turn(*motion_, step.context)) return false;
   JointFrames own;
   const Mat3& R_b = anchors() ? held_frames(step, own).R_b : user_frames_.R_b;
   // Parallel axes, enforced by right angles, could also be antiparallel: the rows do not

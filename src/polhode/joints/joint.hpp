@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/joints/driven_turn.hpp>
 #include <polhode/joints/enforcement.hpp>
 #include <polhode/joints/moving_frame.hpp>
 #include <polhode/joints/recipe.hpp>

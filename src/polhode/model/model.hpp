@@ -159,7 +159,10 @@ struct AnalysisSpec {
   double assembly_tolerance = 0.0;
   std::optional<double> min_step, max_step;  ///< [s]
   bool smooth_multipliers = true;            ///< Smooth-multiplier start (rigid.md 7.3).
-  std::optional<int> load_steps;      ///< Statics: equal parts of the load; absent: automatic.
+  std::optional<int> load_steps;  ///< Statics: equal parts of the load; absent: automatic.
+  /// Statics: end of a history, along which functions of time act as they stand [s]; absent: all
+  /// loads grow to their full size.
+  std::optional<double> history;
   int count = 10;                     ///< Number of modes.
   std::string about = "equilibrium";  ///< Modes: equilibrium | start.
   double checkpoint_every = 0.0;      ///< Wall-clock seconds; 0: only at the end.

@@ -23,7 +23,8 @@ void explain(const Model& model, const State& state, bool statics, StepReport& r
   // From the last step on, which may have ended where a function is not finite: forces are taken
   // within steps.
   const double from = std::max(0.0, state.t - state.dt_last);
-  const double rest = (statics ? 1.0 : model.analysis.duration) - state.t;
+  const double end = statics ? model.analysis.history.value_or(1.0) : model.analysis.duration;
+  const double rest = end - state.t;
   const double step = state.dt_last > 0.0 ? state.dt_last : rest;
   const double to = state.t + (statics ? rest : model.analysis.step.value_or(step));
   const std::string cause = not_finite_in(model, from, to);
@@ -80,7 +81,8 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
                            const std::atomic<bool>* stop) {
   Impl& s = *impl_;
   const double end = s.end();
-  const std::optional<double> every = s.statics ? std::nullopt : s.model.output.every;
+  const bool in_time = !s.statics || s.model.analysis.history;
+  const std::optional<double> every = in_time ? s.model.output.every : std::nullopt;
   const bool automatic = !s.model.analysis.step;
   const double wall = wall_clock(), cpu = cpu_clock();
   double looked = -std::numeric_limits<double>::infinity();

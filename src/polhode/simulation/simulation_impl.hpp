@@ -129,6 +129,7 @@ struct Simulation::Impl {
                        "type: dynamics");
     StaticOptions options;
     options.load_steps = model.analysis.load_steps.value_or(0);
+    options.history = model.analysis.history.value_or(0.0);
     options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
     statics = std::make_unique<LoadStepper>(system, options);
     narration.clear();  // it describes steps in time

@@ -12,8 +12,8 @@ namespace polhode {
 
 /// Equilibria under increasing loads: gravity, loads and prescribed displacements times a load
 /// factor from 0 to 1. The first increment is the whole load; increments are adapted to the number
-/// of iterations. Or equilibria along a history, at times from 0 to StaticOptions::history: then the
-/// loads at its start grow first, before the time 0.
+/// of iterations. Or equilibria along a history, at times from 0 to StaticOptions::history: then
+/// the loads at its start grow first, before the time 0.
 class LoadStepper {
  public:
   explicit LoadStepper(const System& system, const StaticOptions& options = {});

@@ -18,6 +18,7 @@ void check_type(Section& section, const std::string& type) {
                             "min_step", "max_step", "smooth_multipliers"})
       refuse(key, "type dynamics");
   if (type == "dynamics") refuse("load_steps", "type statics or modes");
+  if (type != "statics") refuse("history", "type statics");
   if (type != "modes")
     for (const char* key : {"count", "about"}) refuse(key, "type modes");
 }

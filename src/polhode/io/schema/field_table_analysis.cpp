@@ -113,6 +113,16 @@ const FieldTable& analysis_fields() {
            .range = {1, 100000},
            .member = &AnalysisSpec::load_steps,
            .may_change = true},
+          {.name = "history",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Statics along a history that ends at this time: functions of time act as "
+                      "they stand, not times a load factor; events switch, and output.every gives "
+                      "the times of frames.",
+           .standard = "none: all loads grow to their full size",
+           .range = kPositive,
+           .member = &AnalysisSpec::history,
+           .may_change = true},
           {.name = "count",
            .kind = kInteger,
            .meaning = "Number of modes, the lowest first.",
