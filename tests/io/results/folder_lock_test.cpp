@@ -31,8 +31,10 @@ TEST(FolderLock, RefusesASecondRunByTheNameOfTheFirst) {
                                                "another folder for the results with -o.",
                                                ::getpid())));
   }
+  EXPECT_TRUE(io::FolderLock::is_held(scratch / "out"));
   const io::FolderLock elsewhere(scratch / "out2", "other.yaml");
   first.reset();
+  EXPECT_FALSE(io::FolderLock::is_held(scratch / "out"));
   EXPECT_TRUE(std::filesystem::is_empty(scratch / "out"));
   const io::FolderLock next(scratch / "out", "other.yaml");
 }
@@ -42,6 +44,7 @@ TEST(FolderLock, IsFreeAfterAKill) {
   const test::Scratch scratch;
   std::filesystem::create_directory(scratch / "out");
   std::ofstream(scratch / "out/.polhode.lock") << "process 1, model 'gone.yaml'";
+  EXPECT_FALSE(io::FolderLock::is_held(scratch / "out"));
   const io::FolderLock lock(scratch / "out", "crank.yaml");
 }
 

@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <polhode/core/error.hpp>
+#include <polhode/io/results/results_reader.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <support/scratch.hpp>
 
@@ -67,6 +68,26 @@ std::string python(const std::string& code) {
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
   pclose(pipe);
   return output;
+}
+
+// Readers find no file or one that they can open, also while it is written, when it looks longer.
+TEST(ResultsFile, HasItsNameFromItsFirstFrameOn) {
+  const test::Scratch scratch;
+  const std::string path = scratch / "results.h5";
+  const io::ResultsLayout l = layout(2);
+  io::ResultsFile file(path, l, {});
+  EXPECT_FALSE(std::filesystem::exists(path));
+  file.append(frame(l, 0));
+  EXPECT_EQ(io::ResultsReader(path).frames(), 1U);
+  const std::uintmax_t during = std::filesystem::file_size(path);
+  for (int k = 1; k < 10; ++k) file.append(frame(l, k));
+  file.sync();
+  EXPECT_EQ(io::ResultsReader(path).frames(), 10U);
+  EXPECT_EQ(file.last_time(), 4.5);
+  file.close();
+  EXPECT_EQ(io::ResultsReader(path).frames(), 10U);
+  EXPECT_LT(std::filesystem::file_size(path), during);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch / ""), {}), 1);
 }
 
 TEST(ResultsFile, IsReadWithThreeLinesOfPython) {

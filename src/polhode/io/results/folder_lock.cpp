@@ -59,6 +59,14 @@ FolderLock::FolderLock(const std::string& folder, const std::string& model)
   if (::ftruncate(file_, 0) == 0) (void)!::pwrite(file_, holder.data(), holder.size(), 0);
 }
 
+bool FolderLock::is_held(const std::string& folder) {
+  const int file = ::open((folder + "/" + kLockName).c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool held = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return held;
+}
+
 FolderLock::~FolderLock() {
   ::unlink(path_.c_str());
   // Not only closed: a process that was forked meanwhile has the file, too.

@@ -16,6 +16,8 @@ class FolderLock {
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
+  /// Whether a run is writing into a folder.
+  [[nodiscard]] static bool is_held(const std::string& folder);
 
  private:
   std::string path_;

@@ -35,6 +35,8 @@ constexpr unsigned kIndexHalfSize = 512;
 /// Buffer size for the conversion of a list of names [bytes]. HDF5 would clear a whole mebibyte for
 /// every list, a third of the time of a short run.
 constexpr std::size_t kNamesBytes = 4096;
+/// Step of the length that is announced ahead [bytes]; the disk holds nothing of it.
+constexpr hsize_t kAheadBytes = hsize_t{4} << 20;
 /// Largest memory for buffered frames.
 constexpr std::size_t kHoldBytes = std::size_t{8} << 20;
 
@@ -229,11 +231,16 @@ struct Hdf5File::Impl {
   }
 
   /// Writes the future length of the file into its first block before any reference to the new
-  /// data. HDF5 itself would write it last, and a kill in between would leave data beyond the
-  /// recorded end that readers accept.
-  void announce_length() {
+  /// data. HDF5 itself would write it last: a kill in between would leave data beyond the recorded
+  /// end, and a reader that has read the first block would not accept what comes then.
+  /// @param ahead  Announces more than is needed now, in large steps, so that it seldom changes;
+  /// the
+  ///               file itself is one step longer, as readers ask for its length first.
+  void announce_length(bool ahead) {
     hsize_t length = 0;
     if (H5Fget_filesize(file.get(), &length) < 0) return;
+    if (ahead) length = (length / kAheadBytes + 2) * kAheadBytes;
+    const auto size = static_cast<off_t>(length + (ahead ? kAheadBytes : 0));
     const std::string& name = unnamed ? unnamed->path() : path;
     const int descriptor = ::open(name.c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) return;
@@ -243,8 +250,7 @@ struct Hdf5File::Impl {
     if (readable && head[0] == 0x89 && head[1] == 'H' && head[8] <= 1) {
       const off_t place = head[8] == 0 ? 40 : 44;
       const off_t now = ::lseek(descriptor, 0, SEEK_END);
-      if (now >= static_cast<off_t>(length) ||
-          ::ftruncate(descriptor, static_cast<off_t>(length)) == 0) {
+      if (now >= size || ::ftruncate(descriptor, size) == 0) {
         const std::uint64_t value = length;
         if (::pwrite(descriptor, &value, sizeof value, place) != sizeof value)
           errno = 0;  // The following flush has and reports the same error.
@@ -254,8 +260,18 @@ struct Hdf5File::Impl {
   }
 
   void flush_file() {
-    announce_length();
+    announce_length(true);
     require(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "cannot be written to the disk");
+    announce_length(true);  // HDF5 has announced its own.
+  }
+
+  /// Cuts off what was announced and not needed.
+  void end_exactly() {
+    announce_length(false);
+    hsize_t length = 0;
+    if (H5Fget_filesize(file.get(), &length) >= 0 &&
+        ::truncate(path.c_str(), static_cast<off_t>(length)) != 0)
+      errno = 0;  // A longer file is read as well.
   }
 
   void write_held() {
@@ -426,7 +442,6 @@ void Hdf5File::append(const std::vector<double>& frame) {
   Impl& m = *impl_;
   if (frame.size() != m.given_size)
     throw std::logic_error("Hdf5File::append: a frame of another size");
-  publish();
   m.held.insert(m.held.end(), frame.begin(), frame.end());
   m.last_time = frame.front();
   if (m.frame_size > m.given_size) {
@@ -440,6 +455,7 @@ void Hdf5File::append(const std::vector<double>& frame) {
   ++m.held_frames;
   const std::chrono::duration<double> waited = Clock::now() - m.last_write;
   if (m.written == 0 || waited.count() > kHold || 8 * m.held.size() > kHoldBytes) m.write_held();
+  publish();  // With its first frame, so that every data set has its index.
 }
 
 std::size_t Hdf5File::frames() const { return impl_->written + impl_->held_frames; }
@@ -447,9 +463,9 @@ std::size_t Hdf5File::frames() const { return impl_->written + impl_->held_frame
 std::optional<double> Hdf5File::last_time() const { return impl_->last_time; }
 
 void Hdf5File::flush() {
-  publish();
   impl_->write_held();
   impl_->flush_file();
+  publish();
 }
 
 void Hdf5File::sync() {
@@ -459,7 +475,7 @@ void Hdf5File::sync() {
 
 void Hdf5File::publish() {
   if (!impl_->unnamed) return;
-  impl_->flush_file();
+  if (impl_->written == 0) impl_->flush_file();
   impl_->unnamed->keep(false);
   impl_->unnamed.reset();
 }
@@ -467,9 +483,11 @@ void Hdf5File::publish() {
 void Hdf5File::close() {
   Impl& m = *impl_;
   if (!m.file.valid()) return;
-  publish();
   m.write_held();
+  publish();
   m.datasets.clear();
+  m.flush_file();
+  m.end_exactly();
   m.require(m.file.close(), "cannot be closed");
 }
 

@@ -67,8 +67,8 @@ class Hdf5File {
   void flush();
   /// Waits until the disk has all frames. @throws FileError
   void sync();
-  /// Gives a new file, whose fixed data are complete, its name. Until then it is beside it under a
-  /// temporary one, so that readers find either no file or one that they can open. @throws
+  /// Gives a new file its name; append() does with the first frame. Until then it is beside it
+  /// under a temporary one, so that readers find either no file or one that they can open. @throws
   /// FileError
   void publish();
   void close();

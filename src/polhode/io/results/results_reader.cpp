@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <thread>
 #include <utility>
 
 #include <unistd.h>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/results/folder_lock.hpp>
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
@@ -24,6 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 
 using hdf5::Id;
+
+/// Attempts to open the file of a run that goes on: one may meet the moment of a write.
+constexpr int kTries = 10;
+constexpr std::chrono::milliseconds kPause{20};
 
 constexpr const char* kHint = "Name the results.h5 that 'polhode run' wrote";
 constexpr const char* kCopyAgain = "Copy the file again, or run the model again";
@@ -239,12 +246,28 @@ struct ResultsReader::Impl {
   }
 };
 
-ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
+ResultsReader::ResultsReader(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  for (int k = 0;; ++k) {
+    try {
+      impl_ = std::move(ResultsReader(path, Once{}).impl_);
+      return;
+    } catch (const FileError&) {
+      if (k == kTries || !FolderLock::is_held(folder.empty() ? "." : folder)) throw;
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+}
+
+ResultsReader::ResultsReader(const std::string& path, Once) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   m.path = path;
   std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    throw FileError(path, "cannot be read", "Check the path and the permissions");
+  if (!fs::is_regular_file(status)) m.fail("is no file");  // a pipe would not end
   // First the promise: a run that goes on lengthens its file before it promises the length.
-  if (!fs::is_regular_file(path, error)) m.fail("is no file");  // a pipe would not end
   const std::uint64_t promised = promised_length(path);
   m.end = fs::file_size(path, error);
   if (error) throw FileError(path, "cannot be read", "Check the path and the permissions");

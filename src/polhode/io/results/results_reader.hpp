@@ -51,6 +51,8 @@ class ResultsReader {
 
  private:
   struct Impl;
+  struct Once {};
+  ResultsReader(const std::string& path, Once attempt);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -145,7 +145,6 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.attribute(r::kProvenance, "overrides", lines(provenance.overrides));
   // A list of one text: attributes are limited to 64 KB, models may be longer.
   file_.names(join(r::kProvenance, "model"), {provenance.model_text});
-  file_.flush();
 }
 
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
