@@ -42,6 +42,22 @@ TEST(CheckMesh, NamesInvertedElements) {
   }
 }
 
+/// Twice the same volume would weigh twice as much; the order of the nodes does not matter.
+TEST(CheckMesh, RefusesAnElementThatIsGivenTwice) {
+  solids::Mesh mesh = block(2);
+  for (const int i : {1, 2, 3, 0, 5, 6, 7, 4})
+    mesh.blocks[0].nodes.push_back(mesh.blocks[0].nodes[static_cast<std::size_t>(i)]);
+  try {
+    solids::check_mesh(mesh);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "pad.msh: 1 element is given twice: 3; element 3 has the nodes of element 1. Leave "
+        "one of them out.");
+  }
+}
+
 TEST(CheckMesh, DetectsAnElementThatIsInvertedAtOneNodeOnly) {
   solids::Mesh mesh =
       solids::make_mesh("m", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "hex20");

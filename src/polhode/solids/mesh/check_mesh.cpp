@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
 
 #include <polhode/core/disjoint_sets.hpp>
 #include <polhode/core/error.hpp>
@@ -59,6 +60,34 @@ void find_inverted(const Mesh& mesh, std::vector<MeshFault>& faults) {
               numbers(bad), worst),
        all ? "The order of nodes is not that of this file format; export the mesh again"
            : "Mesh the part again, with smaller or straighter elements there"});
+}
+
+/// Elements of one shape with the same nodes in any order: the same volume twice.
+void find_same_elements(const Mesh& mesh, std::vector<MeshFault>& faults) {
+  std::vector<std::int64_t> twice;
+  std::string example;
+  int first = 0;
+  for (const ElementBlock& block : mesh.blocks) {
+    const std::size_t n = block.shape().nodes.size();
+    std::map<std::vector<int>, int> known;
+    for (std::size_t at = 0; at + n <= block.nodes.size(); at += n, ++first) {
+      const auto from = block.nodes.begin() + static_cast<std::ptrdiff_t>(at);
+      std::vector<int> nodes(from, from + static_cast<std::ptrdiff_t>(n));
+      std::sort(nodes.begin(), nodes.end());
+      const auto [entry, is_new] = known.try_emplace(std::move(nodes), first);
+      if (is_new) continue;
+      twice.push_back(mesh.element_label(first));
+      if (example.empty())
+        example = format("element {} has the nodes of element {}", mesh.element_label(first),
+                         mesh.element_label(entry->second));
+    }
+  }
+  if (twice.empty()) return;
+  faults.push_back(
+      {FaultKind::kSameElements, true,
+       format("{} given twice: {}; {}", counted(twice.size(), "element is", "elements are"),
+              numbers(twice), example),
+       "Leave one of them out"});
 }
 
 void find_duplicates(const Mesh& mesh, std::vector<MeshFault>& faults) {
@@ -134,6 +163,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
 std::vector<MeshFault> mesh_faults(const Mesh& mesh) {
   std::vector<MeshFault> faults;
   find_inverted(mesh, faults);
+  find_same_elements(mesh, faults);
   find_duplicates(mesh, faults);
   find_pieces(mesh, faults);
   return faults;

@@ -10,7 +10,13 @@ namespace polhode::solids {
 
 /// An error of a mesh.
 struct MeshFault {
-  enum class Kind : unsigned char { kInverted, kPieces, kDuplicateNodes, kLooseNodes };
+  enum class Kind : unsigned char {
+    kInverted,
+    kSameElements,
+    kPieces,
+    kDuplicateNodes,
+    kLooseNodes
+  };
 
   Kind kind;
   bool fatal;        ///< No solid can be made of it. Otherwise a note.
@@ -18,11 +24,11 @@ struct MeshFault {
   std::string hint;
 };
 
-/// Errors of a mesh: inverted or collapsed elements, coincident nodes (within 1e-9 of the mesh's
-/// extent), disconnected parts, nodes of no element. Empty: the mesh is valid.
+/// Errors of a mesh: inverted or collapsed elements, elements given twice, coincident nodes (within
+/// 1e-9 of the mesh's extent), disconnected parts, nodes of no element. Empty: the mesh is valid.
 [[nodiscard]] std::vector<MeshFault> mesh_faults(const Mesh& mesh);
 
-/// Rejects a mesh with a fatal error: inverted elements.
+/// Rejects a mesh with a fatal error: inverted elements, or elements given twice.
 /// @returns the other errors, as notes: "what. hint."
 /// @throws InputError
 std::vector<std::string> check_mesh(const Mesh& mesh);
