@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <polhode/core/format.hpp>
 #include <polhode/equations/body_contact_assembler.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/equations/node_condensation.hpp>
+#include <polhode/equations/node_motion.hpp>
 #include <polhode/linear/kkt_matrix.hpp>
+#include <polhode/math/cayley.hpp>
 #include <polhode/newton/tangent_columns.hpp>
 #include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
@@ -17,6 +21,9 @@ namespace {
 constexpr const char* kAssembled = "assembled";
 /// Largest number of displaced nodes of solids, evenly chosen.
 constexpr int kMaxNodesMoved = 24;
+/// Displacement of all unknowns to look beside a kink, in sizes of the model or an element, and
+/// radians: large against those of differences, which must not cross the kink again.
+constexpr double kBeside = 1e-4;
 /// Largest number of shortenings of a prediction that inverts elements or passes through a surface.
 constexpr int kShortenings = 8;
 
@@ -354,10 +361,13 @@ std::string TangentReport::text() const {
       worst.numeric, worst.error);
 }
 
-TangentReport check_tangents(const System& system, const State& state, double dt, double rho_inf,
-                             MomentumRate form, int most_bodies) {
+namespace {
+
+/// Comparison of all parts at a trial.
+TangentReport compare_at(const System& system, const State& state, Trial trial, MomentumRate form,
+                         int most_bodies) {
   TangentReport report;
-  WholeTangent whole(system, state, sample_trial(system, state, dt, rho_inf), form);
+  WholeTangent whole(system, state, std::move(trial), form);
   check_interactions(system, state, whole.trial(), report);
   check_elements(system, state, whole.trial(), report);
   if (whole.has_contacts())
@@ -368,6 +378,75 @@ TangentReport check_tangents(const System& system, const State& state, double dt
     compare_whole(system, whole, most_bodies, report);
   else
     report.left_out.push_back(whole.fault());
+  return report;
+}
+
+/// Displaces every unknown of a trial by a number of its own between −size and size: of bodies in
+/// sizes of the model and radians, of nodes in sizes of an element.
+void nudge(const System& system, const State& state, double size, Trial& trial) {
+  int k = 0;
+  const auto number = [&] { return size * std::sin(1.0 + 7.3 * k++); };
+  const auto vector = [&] {
+    const double x = number(), y = number();
+    return Vec3(x, y, number());
+  };
+  for (int b = 0; b < system.body_count(); ++b) {
+    const BodyStep at = body_step(system, state, trial, b);
+    const Vec3 d = system.length_scale() * vector(), turn = vector();
+    move_body(state, trial, system.slot(b), at.u + d, compose_cayley(turn, at.theta));
+  }
+  const Nodes& nodes = system.nodes();
+  if (nodes.empty()) return;
+  for (int i = 0; i < nodes.count(); ++i)
+    for (int c = 0; c < 3; ++c)
+      if (nodes.unknown(i, c) >= 0) {
+        const auto at = static_cast<std::size_t>(3 * i + c);
+        trial.node_u[at] += nodes.element_size() * number();
+        trial.node_x[at] = state.node_x[at] + trial.node_u[at];
+      }
+  follow_bodies(system, state, trial);
+  update_node_velocities(system, state, trial);
+}
+
+/// Parts that are right on both sides of a trial at which they are wrong have no derivative there,
+/// as a cable at its free length or a fibre before its first strain: the comparison beside it
+/// counts.
+void look_beside_kinks(const System& system, const State& state, const Trial& trial,
+                       MomentumRate form, int most_bodies, TangentReport& report) {
+  const auto wrong = [](const TangentPart& part) {
+    return !(part.worst.error <= kTangentTolerance);
+  };
+  if (std::none_of(report.parts.begin(), report.parts.end(), wrong)) return;
+  std::vector<TangentReport> beside;
+  for (const double size : {kBeside, -kBeside}) {
+    Trial moved = trial;
+    nudge(system, state, size, moved);
+    beside.push_back(compare_at(system, state, std::move(moved), form, most_bodies));
+  }
+  for (TangentPart& part : report.parts) {
+    if (!wrong(part)) continue;
+    TangentDifference worst;
+    int seen = 0;
+    for (const TangentReport& other : beside)
+      for (const TangentPart& same : other.parts)
+        if (same.kind == part.kind && same.compared > 0) {
+          ++seen;
+          if (!(same.worst.error <= worst.error)) worst = same.worst;
+        }
+    if (seen < 2 || !(worst.error <= kTangentTolerance)) continue;
+    part.worst = worst;
+    report.left_out.push_back(format(
+        "{} here, where it is not differentiable: it was compared on both sides", part.kind));
+  }
+}
+
+}  // namespace
+
+TangentReport check_tangents(const System& system, const State& state, double dt, double rho_inf,
+                             MomentumRate form, int most_bodies) {
+  const Trial trial = sample_trial(system, state, dt, rho_inf);
+  TangentReport report = compare_at(system, state, trial, form, most_bodies);
+  look_beside_kinks(system, state, trial, form, most_bodies, report);
   // The assembled tangent contains the errors of its parts, whose reports are more specific.
   for (const TangentPart& part : report.parts)
     if (!(part.worst.error <= report.worst.error) &&
