@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/solids/cell_stability.hpp>
 #include <polhode/solids/elements/extrapolation.hpp>
 #include <polhode/solids/elements/reference_data.hpp>
 #include <polhode/solids/solid_elements.hpp>
@@ -24,6 +26,11 @@ Mat3 symmetric(const double* v) {
 Vec3 stretches(const double* C) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(symmetric(C), Eigen::EigenvaluesOnly);
   return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
+}
+
+/// Unit vector of the smallest principal stretch, in the undeformed shape.
+Vec3 direction_of_least(const double* C) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric(C)).eigenvectors().col(0);
 }
 
 double poisson_ratio(LinearModuli moduli) {
@@ -207,20 +214,45 @@ class SolidGroup final : public SolidElements {
     LeastStretch least{std::numeric_limits<double>::infinity(), -1};
     each_sample(instant, history, [&](int e, const double* v) {
       const double s = stretches(v + 6)[2];
-      if (!(s >= least.value)) least = {s, e};
+      if (!(s >= least.value)) least = {s, e, direction_of_least(v + 6)};
     });
     return least;
   }
 
   std::string stretch_warning(const LeastStretch& least) const override {
-    if (least.value >= kind_.least_stretch) return {};
+    if (least.element < 0 || !(least.value < 1.0)) return {};
+    const double bound = least_stretch_of(least);
+    if (least.value >= bound) return {};
     return format(
-        "{}: element {} is compressed to {:.2f} of its length; {} has spurious modes below {:g}. "
-        "Use hex8_q1p0 with an uncoupled material, or a quadratic element.",
-        name_, least.element, least.value, kind_.name, kind_.least_stretch);
+        "{}: element {} is compressed to {:.2f} of its length; {} of this shape has spurious modes "
+        "below {:.2g}. Use hex8_q1p0 with an uncoupled material, a quadratic element, or cells "
+        "that "
+        "are longer in the direction of the pressure.",
+        name_, least.element, least.value, kind_.name, bound);
   }
 
  private:
+  /// Stretch below which an element has spurious modes: that of its kind, or of its shape if flat.
+  [[nodiscard]] double least_stretch_of(const LeastStretch& least) const {
+    if (kind_.least_stretch == 0.0 || kind_.shape != "hex8" || material_->has_fibres())
+      return kind_.least_stretch;
+    const std::span<const int> list = nodes(least.element);
+    const auto edge = [&](std::size_t i) {
+      return Vec3(X_[static_cast<std::size_t>(list[i])] - X_[static_cast<std::size_t>(list[0])]);
+    };
+    const std::array<Vec3, 3> edges{edge(1), edge(3), edge(4)};
+    Vec3 size, along;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3& e = edges[static_cast<std::size_t>(i)];
+      size[i] = e.norm();
+      along[i] = std::abs(e.dot(least.direction)) / size[i];
+    }
+    Eigen::Index axis = 0;
+    along.maxCoeff(&axis);
+    return std::max(kind_.least_stretch,
+                    stable_stretch(kind_.name, material_, size, static_cast<int>(axis)));
+  }
+
   /// Leading packs of a block's scratch that advance() changes: enhanced modes, or the pressures of
   /// mean dilatation.
   [[nodiscard]] std::size_t moved_packs() const {

@@ -31,6 +31,7 @@ struct SolidElementsDescription {
 struct LeastStretch {
   double value = 1.0;  ///< Mean over the element [-].
   int element = -1;
+  Vec3 direction = Vec3::Zero();  ///< Of it in the undeformed shape [-].
 };
 
 /// A group of solid elements. `scratch` must be zero at its first use, and a first evaluation with
