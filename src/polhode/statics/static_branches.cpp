@@ -19,6 +19,8 @@ constexpr double kEnds = 1e-5;
 /// are connected.
 constexpr double kShrinks = 0.5;
 constexpr int kTrials = 3;
+/// Largest extrapolation to a limit point, in differences of the last two loads.
+constexpr double kReach = 8.0;
 /// Remaining part of the distance, at the smallest interval, above which there is a jump.
 constexpr double kJumps = 0.1;
 
@@ -37,11 +39,13 @@ double state_distance(const System& system, const State& a, const State& b) {
   return most;
 }
 
+/// A trial whose count is not known lies at the load itself: its tangent is singular to rounding.
+/// One that has not converged is beyond it on the path from below; it narrows the interval, but is
+/// no equilibrium that has lost its stability.
 std::optional<LimitPoint> locate_stability_change(const System& system,
                                                   const StaticOptions& options, LoadInterval at,
                                                   int first, int after) {
   LimitPoint point;
-  point.load_factor = at.high;
   point.unstable = after;
   bool seen = false;                     // otherwise the equilibrium above lies on another branch
   StaticNewton finder(system, options);  // the tangent of the other one is used later
@@ -49,25 +53,38 @@ std::optional<LimitPoint> locate_stability_change(const System& system,
   SoftestMotion soft = finder.softest();
   point.motion = soft.text;
   double at_high = -std::abs(soft.stiffness), at_low = std::numeric_limits<double>::quiet_NaN();
-  State trial = at.above;
   for (int i = 0; i < kLocations && at.high - at.low > kLocated * at.high; ++i) {
     double part = at_low / (at_low - at_high);
     if (!(part > 0.02 && part < 0.98) || i % 3 == 2) part = 0.5;
     const double factor = at.low + part * (at.high - at.low);
-    trial = at.below;
-    const StaticStep step = finder.solve(trial, factor);
-    if (!step.converged || step.unstable < 0) break;
+    State trial = at.below;
+    StaticStep step = finder.solve(trial, factor);
+    if (!step.converged) {
+      trial = at.above;
+      step = finder.solve(trial, factor);
+    }
+    if (!step.converged) {
+      at.high = factor;
+      at_high = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     soft = finder.softest();
+    if (!soft.text.empty()) point.motion = soft.text;
+    if (step.unstable < 0) {
+      if (!step.free_motions.empty()) point.motion = step.free_motions.front();
+      point.load_factor = factor;
+      return point;
+    }
     if (step.unstable == first) {
       at.low = factor;
-      at.below = trial;
+      at.below = std::move(trial);
       at_low = std::abs(soft.stiffness);
     } else {
       at.high = factor;
+      at.above = std::move(trial);
       at_high = -std::abs(soft.stiffness);
       seen = true;
     }
-    if (!soft.text.empty()) point.motion = soft.text;
   }
   point.load_factor = 0.5 * (at.low + at.high);
   if (!seen) return {};
@@ -76,8 +93,9 @@ std::optional<LimitPoint> locate_stability_change(const System& system,
 
 /// @eq{statics-jump}
 std::optional<LimitPoint> locate_jump(const System& system, const StaticOptions& options,
-                                      LoadInterval at) {
+                                      LoadInterval at, std::optional<State>& continued) {
   StaticNewton finder(system, options);
+  const double load = at.high;
   const double whole = state_distance(system, at.below, at.above);
   double way = whole;
   LimitPoint point;
@@ -102,11 +120,36 @@ std::optional<LimitPoint> locate_jump(const System& system, const StaticOptions&
     if (i == kTrials - 1 && way < kShrinks * whole) return {};
   }
   if (way < kJumps * whole) return {};
+  if (load - at.low <= 2.0 * kEnds * load) {  // followed as far as the load itself
+    State end = at.below;
+    if (finder.solve(end, load).converged &&
+        state_distance(system, at.below, end) < kJumps * whole) {
+      continued = std::move(end);
+      return {};
+    }
+  }
   finder.assemble_at(at.below, at.low);
   point.motion = finder.softest().text;
   point.load_factor = at.low;
   point.jump = true;
   point.distance = way;
+  return point;
+}
+
+std::optional<LimitPoint> extrapolate_limit(const System& system, const StaticOptions& options,
+                                            const LoadInterval& at) {
+  StaticNewton finder(system, options);
+  finder.assemble_at(at.below, at.low);
+  const double before = finder.softest().stiffness;
+  finder.assemble_at(at.above, at.high);
+  const SoftestMotion soft = finder.softest();
+  if (!(soft.stiffness > 0.0 && before > soft.stiffness)) return {};
+  const double part =
+      soft.stiffness * soft.stiffness / (before * before - soft.stiffness * soft.stiffness);
+  if (!(part < kReach)) return {};
+  LimitPoint point;
+  point.load_factor = at.high + part * (at.high - at.low);
+  point.motion = soft.text;
   return point;
 }
 

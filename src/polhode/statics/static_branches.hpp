@@ -27,9 +27,20 @@ struct LoadInterval {
 
 /// End of the branch of equilibria connected with the one below: by bisection, following the branch
 /// from below as far as it exists. @eq{statics-jump}
-/// @returns nothing if the two are connected: their distance decreases with the interval.
+/// @param continued  Set to the equilibrium on the branch from below at the load above, if that
+///                   branch does not end before.
+/// @returns nothing if the two are connected, as their distance decreases with the interval, or if
+///          the branch continues.
 [[nodiscard]] std::optional<LimitPoint> locate_jump(const System& system,
                                                     const StaticOptions& options,
-                                                    LoadInterval interval);
+                                                    LoadInterval interval,
+                                                    std::optional<State>& continued);
+
+/// Load at which a branch ends, from its last two equilibria: near a limit point the square of the
+/// vanishing stiffness is linear in the load. @eq{statics-limit-point}
+/// @returns nothing if the stiffness does not vanish soon.
+[[nodiscard]] std::optional<LimitPoint> extrapolate_limit(const System& system,
+                                                          const StaticOptions& options,
+                                                          const LoadInterval& interval);
 
 }  // namespace polhode

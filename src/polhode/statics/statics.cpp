@@ -125,15 +125,25 @@ struct LoadStepper::Impl {
     return !step.relaxed && way > kNear && (step.iterations > kEasy || way > kFar * expected);
   }
 
-  /// Reports changes between the last equilibrium and this one: of stability, or of the branch.
-  void look_between(const State& old, double from, const State& state, const StaticStep& step,
+  /// Reports changes between the last equilibrium and this one: of stability, or of the branch. An
+  /// equilibrium on another branch is replaced by that of the branch from below, if there is one.
+  void look_between(const State& old, double from, State& state, StaticStep& step,
                     double expected) {
-    const LoadInterval interval{old, state, from, step.load_factor};
+    LoadInterval interval{old, state, from, step.load_factor};
     // First a jump: on another branch stability may change too, at a different load.
     std::optional<LimitPoint> point;
     if (suspicious(old, state, step, expected)) {
-      point = locate_jump(*system, options, interval);
+      std::optional<State> continued;
+      point = locate_jump(*system, options, interval, continued);
       if (point) point->unstable = step.unstable;
+      if (continued) {
+        StaticStep again = newton.solve(*continued, step.load_factor);
+        if (again.converged) {
+          interval.above = state = std::move(*continued);
+          step = again;
+          take(std::move(again));
+        }
+      }
     }
     if (!point && unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
       point = locate_stability_change(*system, options, interval, unstable, step.unstable);
@@ -250,6 +260,10 @@ struct LoadStepper::Impl {
           newton.assemble_at(state, from);
           soft = newton.softest().text;
         }
+        if (equilibria > 1 && from - factor_before > kSame)
+          if (std::optional<LimitPoint> end =
+                  extrapolate_limit(*system, options, {before, state, factor_before, from}))
+            report.limit_points.push_back(std::move(*end));
         explain(step, soft);
         return false;
       }
