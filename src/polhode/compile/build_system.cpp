@@ -256,7 +256,8 @@ class Builder {
         .angle = angle,
         .displacement = displacement,
         .function = load.value,
-        .drive = load.drive};
+        .drive = load.drive,
+        .at_rest = model_.analysis.type != "dynamics"};
     d.laws = load.laws;
     d.words = load.words;
     d.matrices = load.matrices;

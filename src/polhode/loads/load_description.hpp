@@ -48,7 +48,8 @@ struct LoadDescription {
   TimeFunctionPtr function{};                      ///< Of a motor.
   /// Kind of that function: key of LoadKind::drives.
   std::string drive{};
-  double start_length = 0.0;                      ///< Distance of the points at the start [m].
+  bool at_rest = false;       ///< Of statics and modes: no time passes between equilibria.
+  double start_length = 0.0;  ///< Distance of the points at the start [m].
   std::map<std::string, TimeFunctionPtr> laws{};  ///< Functions of a coordinate or rate by key.
   std::map<std::string, std::string> words{};     ///< Choices by key.
   std::map<std::string, Mat6> matrices{};         ///< By key.

@@ -18,6 +18,7 @@ Servo::Servo(const LoadDescription& load, const char* limit)
       limit_(load.value(limit, 0.0)) {
   name = load.name;
   bodies = load.bodies;
+  of_limit_ = load.at_rest && k_i_ != 0.0 && !of_speed_;
 }
 
 CoordinateMotion Servo::coordinate(const PairStep& step) const {
@@ -49,8 +50,9 @@ Servo::Command Servo::command(const PairStep& step, const CoordinateMotion& q) c
     u.error = c.load_factor * ((1.0 - af) * from.value + af * to.value) - q.at_alpha;
   }
   // the integral up to t_{n+αf} contains the present error
-  const double gain = k_ + k_i_ * af * c.dt;
-  u.force = gain * u.error + d_ * (wanted_rate - rate.value) + k_i_ * step.history[kIntegral];
+  const double gain = of_limit_ ? k_ : k_ + k_i_ * af * c.dt;
+  const double integral = of_limit_ ? step.lambda[0] : k_i_ * step.history[kIntegral];
+  u.force = gain * u.error + d_ * (wanted_rate - rate.value) + integral;
   u.by_a = -gain * q.alpha_a - d_ * rate.by_a;
   u.by_b = -gain * q.alpha_b - d_ * rate.by_b;
   u.limited = limit_ > 0.0 && std::abs(u.force) > limit_;
@@ -67,7 +69,43 @@ void Servo::evaluate(const PairStep& step, PairTerms& t) const {
   const Command u = command(step, q);
   add_force(q, u.force, step, t);
   if (step.context.tangents) add_force_change(q, u.by_a, u.by_b, t);
+  if (of_limit_) put_row(step, q, u, t);
   clear_ground_sides(step, t);
+}
+
+/// The row −e + (λ/k_i) μ = 0; at the limit of the force μ = ±F_max and the row has no error.
+/// @eq{servo-at-rest}
+void Servo::put_row(const PairStep& step, const CoordinateMotion& q, const Command& u,
+                    PairTerms& t) const {
+  const StepContext& c = step.context;
+  t.B_a.col(0) = q.mu_a;
+  t.B_b.col(0) = q.mu_b;
+  if (u.limited) {
+    const double per_force = 1.0 / (k_ > 0.0 ? k_ : std::abs(k_i_));
+    t.g[0] = -per_force * u.force;
+    t.compliance[0] = per_force;
+    t.B_a.col(0).setZero();
+    t.B_b.col(0).setZero();
+    if (step.context.tangents) {
+      t.G_a.row(0).setZero();
+      t.G_b.row(0).setZero();
+    }
+    return;
+  }
+  t.g[0] = -u.error_n1;
+  // Zero but in the assembly that measures rates, where c/Δt is λ.
+  t.compliance[0] = c.dt != 0.0 ? c.ga.c / c.dt / k_i_ : 0.0;
+  if (step.context.tangents) {
+    t.G_a.row(0) = q.at_n1_a;
+    t.G_b.row(0) = q.at_n1_b;
+  }
+}
+
+void Servo::acceleration_terms(const PairStep& step, Vec6& gamma) const {
+  if (!of_limit_) return;
+  gamma[0] =
+      std::visit([&](const auto& q) { return q.acceleration_at_n1(step.a, step.b); }, coordinate_) -
+      function_->rates(step.context.t_n1(), TimeSide::kAfter).second;
 }
 
 Work Servo::work(const PairStep& step) const {

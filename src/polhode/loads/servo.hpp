@@ -13,12 +13,17 @@ namespace polhode {
 ///
 /// with means over the step. With a prescribed speed s it is ė = s − q̇ and e its integral. While
 /// the force is at its limit, the integral is held (anti-windup). Its work F Δq is exact at ρ∞ = 1.
+///
+/// At rest an integral grows until the error is zero. In statics it is therefore the multiplier μ
+/// of the row e = 0, up to the limit of the force; in modes it is a state of its own, μ̇ = k_i e, as
+/// the row −e + (λ/k_i) μ = 0 of a motion exp(λt). @eq{servo-at-rest}
 class Servo : public InteractionItem {
  public:
   /// @param load  Its angle or displacement, its function and drive; values stiffness, damping,
   ///              integral, and the limit.
   Servo(const LoadDescription& load, const char* limit);
 
+  [[nodiscard]] int rows() const { return of_limit_ ? 1 : 0; }
   [[nodiscard]] int history_size() const { return kHistory; }
   [[nodiscard]] bool conservative() const { return false; }
   /// Steps backwards in time are possible only without damping, memory and limit.
@@ -30,6 +35,7 @@ class Servo : public InteractionItem {
   }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {function_}; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
+  void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] or moment [N m] on b, coordinate, its rate, error, power [W]
   /// and work since the start [J].
@@ -52,10 +58,13 @@ class Servo : public InteractionItem {
   };
   [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;
   [[nodiscard]] Command command(const PairStep& step, const CoordinateMotion& q) const;
+  void put_row(const PairStep& step, const CoordinateMotion& q, const Command& u,
+               PairTerms& t) const;
 
   JointCoordinate coordinate_;
   TimeFunctionPtr function_;
   bool of_speed_;
+  bool of_limit_;  ///< Its integral has reached its limit: a row. Statics and modes.
   double k_, d_, k_i_, limit_;
 };
 

@@ -45,7 +45,19 @@ std::vector<Vec3> steady_spin(const Model& model) {
     spin.push_back(system.bodies()[b].point_mass ? Vec3(Vec3::Zero()) : m.W);
     turns = turns || !spin.back().isZero(0.0);
   }
-  return turns ? spin : std::vector<Vec3>{};
+  if (!turns) return {};
+  const Nodes& nodes = system.nodes();
+  for (int i = 0; i < nodes.count(); ++i) {
+    const int b = nodes[i].body;
+    const NodePlace place = nodes.place_of(i);
+    if (b < 0 || place.group < 0 || spin[static_cast<std::size_t>(b)].isZero(0.0)) continue;
+    throw InputError(nodes.group(place.group).name(),
+                     format("rotates with body '{}', but modes contain the gyroscopic and "
+                            "centrifugal forces of bodies and beams only",
+                            system.bodies()[b].name),
+                     "Describe it as a rigid body or as beams, or leave the angular velocity out");
+  }
+  return spin;
 }
 
 /// Copy of the model at rest, for statics.

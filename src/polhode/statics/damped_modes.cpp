@@ -69,7 +69,7 @@ CVec times(const Mat& A, const CVec& x) {
 
 /// Motions with neither stiffness nor damping, orthonormal in the metric of M.
 Mat free_of(ModalMatrices& m, double sigma) {
-  Mat V(m.n(), 0);
+  Mat V(m.unknowns(), 0);
   if (!m.factor_quadratic(kNearZero * sigma)) return V;
   const auto clean = [&](Vec& x) {
     for (Eigen::Index i = 0; i < V.cols(); ++i) x -= m.mass_times(V.col(i)).dot(x) * V.col(i);
@@ -78,19 +78,19 @@ Mat free_of(ModalMatrices& m, double sigma) {
     return square > 0.0;
   };
   while (V.cols() < kMaxFree) {
-    Vec x(m.n());
+    Vec x(m.unknowns());
     const double step = 2.7 + 0.3 * static_cast<double>(V.cols());
-    for (int i = 0; i < m.n(); ++i) x[i] = 1.0 + std::sin(1.0 + step * i);
+    for (int i = 0; i < m.unknowns(); ++i) x[i] = 1.0 + std::sin(1.0 + step * i);
     bool moves = clean(x);
     for (int k = 0; k < kIterations && moves; ++k) {
-      x = m.inverse(m.mass_times(x)).head(m.n());
+      x = m.inverse(m.mass_times(x));
       moves = clean(x) && clean(x) && x.allFinite();
     }
     if (!moves || std::abs(x.dot(m.stiffness_times(x))) > kFree * m.energy_scale(x)) break;
     // Effect of damping, or of a gyroscopic moment, on it in a time 1/(kNearZero σ).
-    const Vec y = m.inverse(m.damping_times(x)).head(m.n());
+    const Vec y = m.inverse(m.damping_times(x));
     if (std::sqrt(y.dot(m.mass_times(y))) * kNearZero * sigma > kSlows) break;
-    V.conservativeResize(m.n(), V.cols() + 1);
+    V.conservativeResize(m.unknowns(), V.cols() + 1);
     V.rightCols<1>() = x;
   }
   return V;
@@ -100,7 +100,8 @@ Mat free_of(ModalMatrices& m, double sigma) {
 std::vector<EigenPair> dense_pairs(ModalMatrices& m, const Mat& N, const ModalMatrices::Dense& d,
                                    int wanted) {
   const auto n = static_cast<int>(N.cols());
-  const double sigma = shift_of(m, std::min(wanted, n));
+  const int modes = std::max(1, n - (m.unknowns() - m.n()));  // integrals are no oscillators
+  const double sigma = shift_of(m, std::min(wanted, modes));
   const Mat V = free_of(m, sigma);
   std::vector<EigenPair> pairs;
   for (Eigen::Index i = 0; i < V.cols(); ++i)
@@ -158,21 +159,23 @@ class ShiftedInverse {
     M_V_ = Mat(V.rows(), V.cols());
     for (Eigen::Index i = 0; i < V.cols(); ++i) M_V_.col(i) = m.mass_times(V.col(i));
   }
-  [[nodiscard]] Eigen::Index rows() const { return m_.damped() ? 2 * m_.n() : m_.n(); }
+  [[nodiscard]] Eigen::Index rows() const {
+    return m_.damped() ? 2 * m_.unknowns() : m_.unknowns();
+  }
   [[nodiscard]] Eigen::Index cols() const { return rows(); }
   void set_shift(double) const {}  // it is already factored with it
   void perform_op(const double* in, double* out) const {
-    const int n = m_.n();
+    const int n = m_.unknowns();
     if (!m_.damped()) {
       const Vec x = Eigen::Map<const Vec>(in, n);
-      Vec y = sigma_ * sigma_ * m_.inverse(m_.mass_times(x)).head(n);
+      Vec y = sigma_ * sigma_ * m_.inverse(m_.mass_times(x));
       y -= V_ * (M_V_.transpose() * y);
       Eigen::Map<Vec>(out, n) = y;
       return;
     }
     const Vec z_1 = Eigen::Map<const Vec>(in, n), z_2 = Eigen::Map<const Vec>(in + n, n);
     const Vec f = m_.damping_times(z_1) + sigma_ * m_.mass_times(z_1 + z_2);
-    Vec y = -sigma_ * m_.inverse(f).head(n);
+    Vec y = -sigma_ * m_.inverse(f);
     Vec w = z_1 + y;
     y -= V_ * (M_V_.transpose() * y);
     w -= V_ * (M_V_.transpose() * w);
@@ -211,7 +214,7 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
   const auto add = [&](Complex lambda, CVec x) {
     if (V.cols() > 0 && lambda != Complex(0.0)) {
       const Vec re = x.real(), im = x.imag();
-      CVec K(m.n()), C(m.n());
+      CVec K(m.unknowns()), C(m.unknowns());
       K.real() = m.stiffness_times(re);
       K.imag() = m.stiffness_times(im);
       C.real() = m.damping_times(re);
@@ -222,7 +225,7 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
   };
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     const Complex nu = 1.0 / values[i];  // Spectra returns the inverse
-    const CVec x = vectors.col(i).head(m.n());
+    const CVec x = vectors.col(i).head(m.unknowns());
     if (m.damped()) {
       add(from_inverse(nu, sigma), x);
       continue;
@@ -241,7 +244,7 @@ std::vector<EigenPair> damped_modes(ModalMatrices& m, int wanted, int& freedoms)
   if (m.n() <= kDampedDense || 3 * wanted > m.n()) {
     const ModalMatrices::Dense d = m.dense();
     const Mat N = allowed_motions(m, d.Gt);
-    freedoms = static_cast<int>(N.cols());
+    freedoms = static_cast<int>(N.cols()) - (m.unknowns() - m.n());
     if (freedoms == 0) return all;
     all = dense_pairs(m, N, d, wanted);
   } else {
@@ -250,6 +253,7 @@ std::vector<EigenPair> damped_modes(ModalMatrices& m, int wanted, int& freedoms)
   std::vector<EigenPair> list;
   for (EigenPair& pair : all) {
     if (std::abs(pair.lambda.imag()) <= kReal * std::abs(pair.lambda)) pair.lambda.imag(0.0);
+    pair.shape.conservativeResize(m.n());  // without integrals
     if (pair.lambda.imag() >= 0.0) list.push_back(std::move(pair));
   }
   std::stable_sort(list.begin(), list.end(), [](const EigenPair& a, const EigenPair& b) {

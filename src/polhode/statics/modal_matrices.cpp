@@ -66,6 +66,7 @@ std::vector<int> ModalMatrices::counted() const {
   for (int i = 0; i < n(); ++i)
     if (i >= 6 * system_.body_count() || i % 6 < 3 || !system_.bodies()[i / 6].point_mass)
       list.push_back(i);
+  for (int i = n(); i < unknowns(); ++i) list.push_back(i);
   return list;
 }
 
@@ -126,7 +127,7 @@ void ModalMatrices::put_springs_for_compliant_rows() {
     const linear::KktValues::Pair& from = given.pairs[i];
     linear::KktValues::Pair& to = values.pairs[i];
     for (int k = 0; k < pair.rows; ++k) {
-      if (!newton_.bodies().is_spring(pair.first_row + k)) continue;
+      if (!is_spring(pair.first_row + k)) continue;
       any = true;
       const bool on_a = pair.a != kGround, on_b = pair.b != kGround;
       if (on_a) values.diagonal[pair.a] += from.B_a.col(k) * from.G_a.row(k) / from.C[k];
@@ -156,6 +157,7 @@ void ModalMatrices::put_damping(const State& state, const ModeOptions& options) 
   newton_.assemble_with_rates(rate_);
   damping_.combine(K(), -1.0, still);
   K() = still;
+  find_integrals();
   if (!options.spin.empty()) {
     SaddleMatrix gyroscopic(mass_);
     if (put_gyroscopic(state, options.spin, gyroscopic)) {
@@ -163,7 +165,28 @@ void ModalMatrices::put_damping(const State& state, const ModeOptions& options) 
       put_circulatory(state, options.spin);
     }
   }
-  damped_ = largest(damping_, n()) > kNoDamping * std::max(largest(K(), n()), 1e-300);
+  damped_ = !integrals_.empty() ||
+            largest(damping_, n()) > kNoDamping * std::max(largest(K(), n()), 1e-300);
+}
+
+/// Finds the rows whose compliance grows with the rate, after assembly with rates.
+/// @eq{servo-at-rest}
+void ModalMatrices::find_integrals() {
+  for (std::size_t e = 0; e < damping_.values().size(); ++e)
+    if (damping_.row()[e] >= n() && damping_.row()[e] == damping_.column()[e] &&
+        damping_.values()[e] != 0.0)
+      integrals_.push_back(damping_.row()[e] - n());
+  if (integrals_.empty()) return;
+  std::sort(integrals_.begin(), integrals_.end());
+  linear::KktValues values = nothing();
+  const linear::KktTopology& topology = newton_.bodies().topology();
+  for (std::size_t i = 0; i < topology.pairs.size(); ++i)
+    for (int k = 0; k < topology.pairs[i].rows; ++k)
+      if (std::binary_search(integrals_.begin(), integrals_.end(), topology.pairs[i].first_row + k))
+        values.pairs[i].C[k] = newton_.bodies().values().pairs[i].C[k] / rate_;
+  of_integrals_.push_back(mass_);
+  of_integrals_.back().set(values, std::vector<double>(9 * system_.nodes().mass().size(), 0.0),
+                           nullptr, 1.0);
 }
 
 /// Adds the gyroscopic terms. The momentum about the centre of mass is L = J ω with ω = ω_0 + θ̇ +
@@ -256,6 +279,9 @@ void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>&
 
 bool ModalMatrices::factor(double sigma) {
   shifted_.combine(K(), -sigma * s(), mass_);
+  // Integrals act as the springs that they are at this frequency, otherwise they would hold.
+  for (const SaddleMatrix& integrals : of_integrals_)
+    shifted_.combine(shifted_, std::sqrt(std::abs(sigma)), integrals);
   return solver_.factor(shifted_, true);
 }
 
@@ -265,18 +291,44 @@ bool ModalMatrices::factor_quadratic(double sigma) {
   return solver_.factor(shifted_, false);
 }
 
-Vec ModalMatrices::inverse(const Vec& f) const {
-  Vec x = Vec::Zero(mass_.size());
-  x.head(n()) = s() * f.head(n());
-  solver_.solve(x);
+bool ModalMatrices::is_spring(int row) const {
+  return newton_.bodies().is_spring(row) &&
+         !std::binary_search(integrals_.begin(), integrals_.end(), row);
+}
+
+/// All unknowns and multipliers from n() or unknowns() entries.
+Vec ModalMatrices::widened(const Vec& x) const {
+  Vec all = Vec::Zero(mass_.size());
+  all.head(n()) = x.head(n());
+  for (Eigen::Index i = n(); i < x.size(); ++i)
+    all[n() + integrals_[static_cast<std::size_t>(i - n())]] = x[i];
+  return all;
+}
+
+Vec ModalMatrices::narrowed(const Vec& y, Eigen::Index size) const {
+  Vec x(size);
+  x.head(n()) = y.head(n());
+  for (Eigen::Index i = n(); i < size; ++i)
+    x[i] = y[n() + integrals_[static_cast<std::size_t>(i - n())]];
   return x;
 }
 
+Vec ModalMatrices::inverse(const Vec& f) const {
+  Vec x = s() * widened(f);
+  solver_.solve(x);
+  return narrowed(x, f.size());
+}
+
 Vec ModalMatrices::times(const SaddleMatrix& A, double factor, const Vec& x) const {
-  Vec all = Vec::Zero(mass_.size()), y;
-  all.head(n()) = x.head(n());
-  A.times(all, y);
-  return factor * y.head(n());
+  Vec y;
+  A.times(widened(x), y);
+  return factor * narrowed(y, x.size());
+}
+
+Vec ModalMatrices::integral_rows(const Vec& x) const {
+  Vec y;
+  newton_.tangent().times(widened(x), y);
+  return narrowed(y, unknowns()).tail(unknowns() - n()) / s();
 }
 
 Vec ModalMatrices::mass_times(const Vec& x) const { return times(mass_, 1.0, x); }
@@ -288,31 +340,36 @@ Vec ModalMatrices::stiffness_times(const Vec& x) const {
 }
 
 double ModalMatrices::energy_scale(const Vec& x) const {
-  Vec all = Vec::Zero(mass_.size()), y;
-  all.head(n()) = x.head(n());
-  newton_.tangent().magnitudes(all, y);
-  return y.head(n()).dot(x.head(n()).cwiseAbs()) / s();
+  Vec y;
+  newton_.tangent().magnitudes(widened(x), y);
+  return narrowed(y, x.size()).dot(x.cwiseAbs()) / s();
 }
 
 ModalMatrices::Dense ModalMatrices::dense() {
   Dense d;
-  d.K = d.C = d.M = Mat::Zero(n(), n());
-  Mat Gt = Mat::Zero(n(), rows());
+  d.K = d.C = d.M = Mat::Zero(unknowns(), unknowns());
+  Mat Gt = Mat::Zero(unknowns(), rows());
+  std::vector<int> place(static_cast<std::size_t>(mass_.size()), -1);
+  for (int i = 0; i < n(); ++i) place[static_cast<std::size_t>(i)] = i;
+  for (std::size_t i = 0; i < integrals_.size(); ++i)
+    place[static_cast<std::size_t>(n() + integrals_[i])] = n() + static_cast<int>(i);
   const SaddleMatrix& k = K();
   for (std::size_t e = 0; e < k.values().size(); ++e) {
-    const int i = k.row()[e], j = k.column()[e];
-    if (i < n() && j < n()) {
+    const int i = place[static_cast<std::size_t>(k.row()[e])];
+    const int j = place[static_cast<std::size_t>(k.column()[e])];
+    if (i >= 0 && j >= 0) {
       d.K(i, j) += k.values()[e] / s();
       d.C(i, j) += damping_.values()[e] / (s() * rate_);
       d.M(i, j) += mass_.values()[e];
-    } else if (i >= n() && j < n()) {
-      Gt(j, i - n()) -= k.values()[e];
+    } else if (i < 0 && j >= 0) {
+      Gt(j, k.row()[e] - n()) -= k.values()[e];
     }
   }
-  d.Gt.resize(n(), 0);
+  d.Gt.resize(unknowns(), 0);
   for (int r = 0; r < rows(); ++r) {
-    if (newton_.bodies().is_spring(r)) continue;  // already in K
-    d.Gt.conservativeResize(n(), d.Gt.cols() + 1);
+    // springs are in K, integrals are unknowns
+    if (newton_.bodies().is_spring(r)) continue;
+    d.Gt.conservativeResize(unknowns(), d.Gt.cols() + 1);
     d.Gt.rightCols<1>() = Gt.col(r).normalized();
   }
   return d;
@@ -320,7 +377,7 @@ ModalMatrices::Dense ModalMatrices::dense() {
 
 Mat allowed_motions(const ModalMatrices& m, const Mat& Gt) {
   const std::vector<int> counted = m.counted();
-  Mat N = Mat::Zero(m.n(), static_cast<Eigen::Index>(counted.size()));
+  Mat N = Mat::Zero(m.unknowns(), static_cast<Eigen::Index>(counted.size()));
   for (std::size_t i = 0; i < counted.size(); ++i)
     N(counted[i], static_cast<Eigen::Index>(i)) = 1.0;
   if (Gt.cols() == 0) return N;

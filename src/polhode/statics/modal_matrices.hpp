@@ -38,9 +38,12 @@ class ModalMatrices {
   [[nodiscard]] const SaddleMatrix& M() const { return mass_; }
   [[nodiscard]] double s() const { return newton_.scale(); }
   [[nodiscard]] int n() const { return mass_.movable(); }
+  /// n() and the multipliers that are states of their own, integrals of servos: rows whose
+  /// compliance grows with the rate of a motion. @eq{servo-at-rest}
+  [[nodiscard]] int unknowns() const { return n() + static_cast<int>(integrals_.size()); }
   [[nodiscard]] int rows() const { return mass_.size() - mass_.movable(); }
   [[nodiscard]] StaticNewton& statics() { return newton_; }
-  /// Active unknowns: all but the rotations of point masses.
+  /// Active ones of unknowns(): all but the rotations of point masses.
   [[nodiscard]] std::vector<int> counted() const;
   /// Whether forces depend on velocities.
   [[nodiscard]] bool damped() const { return damped_; }
@@ -55,8 +58,8 @@ class ModalMatrices {
   [[nodiscard]] int below() const { return solver_.negative_pivots() - rows(); }
   /// Factors s (K + σ C + σ² M) with its constraints, for any symmetry.
   [[nodiscard]] bool factor_quadratic(double sigma);
-  /// Product of the last factored inverse with f, on the admissible motions, followed by scaled
-  /// multipliers.
+  // Products with vectors of n() or unknowns() entries, of the same length.
+  /// By the last factored inverse, on the admissible motions.
   [[nodiscard]] Vec inverse(const Vec& f) const;
   [[nodiscard]] Vec mass_times(const Vec& x) const;
   [[nodiscard]] Vec damping_times(const Vec& x) const;
@@ -64,7 +67,10 @@ class ModalMatrices {
   /// Scale |x|ᵀ|K||x| of the rounding of xᵀKx.
   [[nodiscard]] double energy_scale(const Vec& x) const;
 
-  /// Dense matrices by unknown; exact constraint rows in Gt, compliant ones in K as springs.
+  /// Left side −Gφ of the rows of integrals, by row, for a shape of n() entries, over s().
+  [[nodiscard]] Vec integral_rows(const Vec& x) const;
+
+  /// Dense matrices by unknowns(); exact constraint rows in Gt, compliant ones in K as springs.
   struct Dense {
     Mat K, C, M, Gt;
   };
@@ -73,18 +79,24 @@ class ModalMatrices {
  private:
   void put_masses(const State& state);
   void put_damping(const State& state, const ModeOptions& options);
+  void find_integrals();
   void put_springs_for_compliant_rows();
   [[nodiscard]] bool put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
                                     SaddleMatrix& gyroscopic) const;
   void put_circulatory(const State& state, const std::vector<Vec3>& spin);
   [[nodiscard]] linear::KktValues nothing() const;
   [[nodiscard]] Vec times(const SaddleMatrix& A, double factor, const Vec& x) const;
+  [[nodiscard]] Vec widened(const Vec& x) const;
+  [[nodiscard]] Vec narrowed(const Vec& y, Eigen::Index size) const;
+  [[nodiscard]] bool is_spring(int row) const;
 
   const System& system_;
   StaticNewton newton_;
   SaddleMatrix mass_, damping_, shifted_;  ///< damping_ is scaled by s() and rate_.
   double rate_ = 1.0, asymmetry_ = 0.0;
   bool damped_ = false;
+  std::vector<int> integrals_;              ///< Rows, ascending.
+  std::vector<SaddleMatrix> of_integrals_;  ///< Their compliance at a rate of 1/s; empty: none.
   SaddleSolver solver_;
 };
 

@@ -9,6 +9,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/statics/follower_loads.hpp>
 #include <polhode/statics/modal_matrices.hpp>
 #include <polhode/statics/modes.hpp>
 #include <polhode/statics/undamped_modes.hpp>
@@ -32,20 +33,23 @@ double hermitian(const ModalMatrices& m, const CVec& x) {
 }
 
 /// Residual of a mode by one inverse iteration after factor_quadratic(σ): φ − (K + σC + σ²M)⁻¹ [(σ
-/// − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included.
+/// − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included. The state of an integral
+/// follows from its row, λ C μ = G φ.
 double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smallest) {
   const Complex lambda = mode.eigenvalue;
   const Vec zero = Vec::Zero(m.n()), &re = mode.shape;
   const Vec& im = mode.shape_imag.size() == 0 ? zero : mode.shape_imag;
   const Complex c = sigma - lambda, d = sigma * sigma - lambda * lambda;
+  const Complex e = lambda != Complex(0.0) ? -c / lambda : Complex(0.0);
   const Vec C_re = m.damping_times(re), C_im = m.damping_times(im);
   const Vec M_re = m.mass_times(re), M_im = m.mass_times(im);
-  const Vec left =
-      re -
-      m.inverse(c.real() * C_re - c.imag() * C_im + d.real() * M_re - d.imag() * M_im).head(m.n());
-  const Vec right =
-      im -
-      m.inverse(c.real() * C_im + c.imag() * C_re + d.real() * M_im + d.imag() * M_re).head(m.n());
+  const Vec G_re = m.integral_rows(re), G_im = m.integral_rows(im);
+  Vec f_re(m.unknowns()), f_im(m.unknowns());
+  f_re << c.real() * C_re - c.imag() * C_im + d.real() * M_re - d.imag() * M_im,
+      e.real() * G_re - e.imag() * G_im;
+  f_im << c.real() * C_im + c.imag() * C_re + d.real() * M_im + d.imag() * M_re,
+      e.real() * G_im + e.imag() * G_re;
+  const Vec left = re - m.inverse(f_re).head(m.n()), right = im - m.inverse(f_im).head(m.n());
   const double size = std::sqrt(left.dot(m.mass_times(left)) + right.dot(m.mass_times(right)));
   const double square = std::norm(lambda);
   return size * (square + sigma * sigma) / std::max(square, smallest);
@@ -216,16 +220,19 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
                  system.group(ref.group).kind(), system.name(ref)));
   }
   ModalMatrices later(system, turned, options);
-  const auto apart = [&](const SaddleMatrix& A, const SaddleMatrix& B) {
+  // Each stiffness has a scale of its own, the inverse of its largest entry, which rounding
+  // changes.
+  const auto apart = [&](const SaddleMatrix& A, double s_A, const SaddleMatrix& B, double s_B) {
     double most = 0.0, size = 0.0;
     for (std::size_t e = 0; e < A.values().size(); ++e) {
       if (A.row()[e] >= m.n() || A.column()[e] >= m.n()) continue;
-      most = std::max(most, std::abs(A.values()[e] - B.values()[e]));
-      size = std::max(size, std::abs(A.values()[e]));
+      most = std::max(most, std::abs(A.values()[e] / s_A - B.values()[e] / s_B));
+      size = std::max(size, std::abs(A.values()[e] / s_A));
     }
     return size > 0.0 ? most / size : 0.0;
   };
-  if (later.s() != m.s() || apart(later.M(), m.M()) > kTurned || apart(later.K(), m.K()) > kTurned)
+  if (apart(later.M(), 1.0, m.M(), 1.0) > kTurned ||
+      apart(later.K(), later.s(), m.K(), m.s()) > kTurned)
     report.warnings.push_back(
         "the model changes as its bodies rotate, so modes hold for this instant only. Mass and "
         "constraints of a rotating body must be symmetric about its axis");
@@ -289,6 +296,13 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
       balance_of_forces.force > 0.0 ? balance_of_forces.residual / balance_of_forces.force : 0.0;
   report.asymmetry = m.asymmetry();
   report.symmetric = !m.damped() && report.asymmetry <= kSymmetricPencil;
+  if (report.asymmetry > kSymmetricPencil)
+    for (const FollowerLoad& load : follower_loads(system, equilibrium, options.load_factor))
+      report.warnings.push_back(
+          format("{} acts here with {:.4g} N and has no potential, as it follows its body or is a "
+                 "moment: motions may lose their freedom and flutter for this reason alone. Switch "
+                 "it off for the modes without it",
+                 load.name, load.force));
   if (!options.spin.empty()) check_steady(system, equilibrium, options, m, report);
   std::vector<Mode> modes =
       report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);

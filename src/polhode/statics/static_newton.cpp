@@ -463,6 +463,8 @@ void StaticNewton::assemble_at(const State& state, double load_factor) {
 /// @eq{modes-damped}
 void StaticNewton::assemble_with_rates(double rate) {
   trial_.context.ga.c = rate * trial_.context.dt;
+  // About a state of rest prescribed components rest, too.
+  trial_.prescribed_v.assign(system_->nodes().prescribed().size(), 0.0);
   const bool mixed = mixed_;
   mixed_ = false;
   nodes_.set_static(false, false);

@@ -42,7 +42,7 @@ struct InverseOperator {
   [[nodiscard]] Eigen::Index cols() const { return matrices->n(); }
   void set_shift(double) const {}  // it is already factored with it
   void perform_op(const double* in, double* out) const {
-    Vec x = matrices->inverse(Eigen::Map<const Vec>(in, matrices->n())).head(matrices->n());
+    Vec x = matrices->inverse(Eigen::Map<const Vec>(in, matrices->n()));
     for (std::size_t i = 0; i < known->size(); ++i) x -= (*M_known)[i].dot(x) * (*known)[i];
     Eigen::Map<Vec>(out, matrices->n()) = x;
   }
