@@ -181,7 +181,7 @@ struct LoadStepper::Impl {
 
   [[nodiscard]] bool stopped() const { return options.stop && options.stop->load(); }
 
-  void accept(State old, double from, const State& state, const StaticStep& step, double expected) {
+  void accept(State old, double from, State& state, StaticStep& step, double expected) {
     bool known = equilibria > 0;
     if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
       State unloaded = old;
