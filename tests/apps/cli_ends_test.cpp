@@ -50,6 +50,32 @@ analysis: {duration: 0.2 s, step: 20 ms, rho_inf: 0}
   EXPECT_THAT(certified.err, HasSubstr("nothing is certified, as run 1 is not trusted"));
 }
 
+/// A motor in a bar that two hinges lock: the start shows it.
+TEST_F(CommandLine, NamesJointsAndDrivesThatContradictEachOther) {
+  write("locked.yaml", R"(format: 1
+bodies: {a: {shape: {box: [1, 0.1, 0.1]}, density: 1000, position: [0.5, 0, 0]}}
+joints:
+  A: {type: revolute, bodies: [ground, a], at: [0, 0, 0], axis: y}
+  B: {type: revolute, bodies: [ground, a], at: [1, 0, 0], axis: y}
+loads: {m: {type: rotary_motor, joint: A, speed: 1}}
+analysis: {duration: 1, step: 10 ms}
+)");
+  const auto result = run({"run", "locked.yaml"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("At t = 0 s these cannot all hold: joint 'A', joint 'B', "
+                                    "rotary_motor 'm'; a step of 0.01 s leaves a gap of "));
+  EXPECT_THAT(result.err, HasSubstr("Remove one of them, or change its motion.\n"));
+  EXPECT_TRUE(exists("locked.results/results.h5"));
+  const auto checked = run({"check", "locked.yaml"});
+  EXPECT_EQ(checked.code, 6);
+  EXPECT_THAT(checked.err, HasSubstr("These cannot all hold from the start on: joint 'A', joint "
+                                     "'B', rotary_motor 'm'. Remove one of them, or change its "
+                                     "motion.\n"));
+  const auto json = run({"check", "locked.yaml", "--json"});
+  EXPECT_EQ(json.code, 6);
+  EXPECT_EQ(value(json.out, "valid"), "false");
+}
+
 TEST_F(CommandLine, FindsAnEquilibriumAndWritesItsLoadSteps) {
   write("weight.yaml", R"(format: 1
 gravity: [0, 0, -10]

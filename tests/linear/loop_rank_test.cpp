@@ -70,6 +70,24 @@ TEST(LoopRank, IsThatOfSingularValuesAndNamesTheSameRows) {
   }
 }
 
+// @tests{row-contradiction}
+TEST(LoopRank, ProjectsRightSidesOntoTheLeftNullSpace) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  const std::vector<linear::BodyRows> rows = ring(12, 5, 4, random);
+  const Mat G = dense(rows, 12);
+  const Eigen::JacobiSVD<Mat> svd(G, Eigen::ComputeFullU);
+  const Mat null =
+      svd.matrixU().rightCols(G.rows() - (svd.singularValues().array() > 1e-9).count());
+  ASSERT_GT(null.cols(), 0);
+  Vec r(G.rows()), x(G.cols());
+  for (double& value : r) value = normal(random);
+  for (double& value : x) value = normal(random);
+  EXPECT_LE((linear::unreachable_part(rows, 12, 1e-9, r) - null * (null.transpose() * r)).norm(),
+            1e-12 * r.norm());
+  EXPECT_LE(linear::unreachable_part(rows, 12, 1e-9, G * x).norm(), 1e-12 * x.norm());
+}
+
 TEST(LoopRank, ReducesManyRowsOnOneBody) {
   std::mt19937 random(3);
   std::vector<linear::BodyRows> rows;

@@ -77,6 +77,30 @@ TEST(RankReport, LeavesOutJointsThatAreNotRedundant) {
   EXPECT_THAT(report.names, ElementsAre("joint 'lower hinge'", "joint 'upper hinge'"));
 }
 
+/// Right-hand side of one row of an interaction, zero in all others.
+std::vector<double> only(const System& system, const std::string& name, int row, double value) {
+  std::vector<double> r(static_cast<std::size_t>(system.rows()), 0.0);
+  for (const InteractionRef& ref : system.interactions())
+    if (system.name(ref) == name) r[static_cast<std::size_t>(ref.first_row + row)] = value;
+  return r;
+}
+
+// @tests{row-contradiction}
+TEST(RankReport, NamesTheRowsThatContradictEachOther) {
+  Mechanism m = door_system();
+  const int handle = m.body("handle", {1.0, 0.2, 1.0});
+  m.joint("spindle", "revolute", 0, handle, {1.0, 0.0, 1.0}, Vec3::UnitY());
+  const System system = m.system();
+  const Contradiction c =
+      find_contradiction(system, system.initial_state(), only(system, "lower hinge", 0, 2.0));
+  EXPECT_GT(c.part, 0.1 * c.of);
+  EXPECT_LE(c.part, c.of);
+  EXPECT_THAT(c.names, ElementsAre("joint 'lower hinge'", "joint 'upper hinge'"));
+  const Contradiction none =
+      find_contradiction(system, system.initial_state(), only(system, "spindle", 0, 2.0));
+  EXPECT_LE(none.part, 1e-12);
+}
+
 TEST(RankReport, GivesAFreeBodySixMotions) {
   Mechanism m;
   m.body("free", {0, 0, 0});

@@ -7,6 +7,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/newton/rank_report.hpp>
 #include <polhode/newton/tangent_check.hpp>
+#include <polhode/stepping/contradiction.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 
 #include "command.hpp"
@@ -31,6 +32,15 @@ std::vector<std::string> drives(const Simulation& simulation) {
     if (const InteractionGroup& group = system.group(ref.group); group.traits(ref.item).prescribes)
       names.push_back(format("{} {}", group.kind(), quote(system.name(ref))));
   return names;
+}
+
+/// Joints and drives whose rows no motion satisfies from the start on, so that a run ends there.
+std::vector<std::string> contradictions(const Simulation& simulation) {
+  const AnalysisSpec& analysis = simulation.model().analysis;
+  if (analysis.type != "dynamics") return {};
+  constexpr double kStepOfDuration = 0.01;
+  return contradicting(simulation.system(), simulation.state(),
+                       analysis.step.value_or(kStepOfDuration * analysis.duration));
 }
 
 /// Conspicuous findings in a model that can be run.
@@ -235,10 +245,11 @@ int check(const CheckOptions& options) {
     if (body.point_mass && !body.fixed) rank.mobility -= 3;
   const std::vector<std::string> notes = warnings(simulation, rank);
   const StartReport& start = simulation.start_report();
-  bool failed = false;
+  const std::vector<std::string> impossible = contradictions(simulation);
+  bool failed = !impossible.empty();
 
   if (options.json) {
-    nlohmann::ordered_json json = {{"valid", true},
+    nlohmann::ordered_json json = {{"valid", impossible.empty()},
                                    {"bodies", simulation.model().bodies.size()},
                                    {"moving_bodies", simulation.system().body_count()},
                                    {"joints", simulation.model().joints.size()},
@@ -253,6 +264,7 @@ int check(const CheckOptions& options) {
                                    {"redundant", rank.names},
                                    {"mobility", rank.mobility},
                                    {"prescribed_by", drives(simulation)},
+                                   {"contradicting", impossible},
                                    {"start",
                                     {{"position_residual", start.position_residual},
                                      {"largest_move", start.largest_move},
@@ -262,7 +274,7 @@ int check(const CheckOptions& options) {
                                    {"warnings", notes}};
     if (options.tangents) {
       const TangentReport tangents = tangents_of(simulation, options.at);
-      failed = !(tangents.error() <= kTangentTolerance);
+      failed = failed || !(tangents.error() <= kTangentTolerance);
       json["tangents"] = tangents_json(tangents);
     }
     print(json.dump(2) + "\n");
@@ -303,12 +315,17 @@ int check(const CheckOptions& options) {
                              counted(simulation.contact_map().pairs.size(), "pair", "pairs"))});
     if (options.tangents) {  // last: the model may have to be run for it
       const TangentReport tangents = tangents_of(simulation, options.at);
-      failed = !(tangents.error() <= kTangentTolerance);
+      failed = failed || !(tangents.error() <= kTangentTolerance);
       add_tangent_rows(tangents, rows);
     }
     print(table(rows));
     for (const std::string& note : notes) say("warning: " + note);
   }
+  if (!impossible.empty())
+    say(
+        format("These cannot all hold from the start on: {}. Remove one of them, or change "
+               "its motion.",
+               name_list(impossible, 12)));
   return failed ? kCheckFailed : kOk;
 }
 

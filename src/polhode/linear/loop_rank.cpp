@@ -25,23 +25,33 @@ double fixed_random(std::uint64_t n) {
   return static_cast<double>(x >> 11) * 0x1.0p-52 - 1.0;
 }
 
+/// Fixed pseudo-random vectors.
+Mat fixed_probes(const std::vector<BodyRows>& rows) {
+  Eigen::Index count = 0;
+  for (const BodyRows& block : rows) count += block.G.rows();
+  Mat probes(count, kProbes);
+  for (Eigen::Index i = 0; i < probes.size(); ++i)
+    probes.data()[i] = fixed_random(static_cast<std::uint64_t>(i));
+  return probes;
+}
+
 class Elimination {
  public:
-  Elimination(const std::vector<BodyRows>& rows, int bodies, double tolerance)
-      : tolerance_(tolerance), of_body_(static_cast<std::size_t>(bodies)) {
+  /// @param probes  Vectors to be projected, by row.
+  Elimination(const std::vector<BodyRows>& rows, int bodies, double tolerance, Mat probes)
+      : tolerance_(tolerance),
+        of_body_(static_cast<std::size_t>(bodies)),
+        probes_(std::move(probes)) {
     int first = 0;
     for (const BodyRows& block : rows) {
       std::vector<int> slots(static_cast<std::size_t>(block.G.rows()));
       for (int& slot : slots) slot = first++;
       add({block.bodies, block.G, std::move(slots)});
     }
-    probes_.resize(first, kProbes);
-    for (Eigen::Index i = 0; i < probes_.size(); ++i)
-      probes_.data()[i] = fixed_random(static_cast<std::uint64_t>(i));
     vanished_.assign(static_cast<std::size_t>(first), 0);
   }
 
-  LoopRank run() {
+  void run() {
     using Entry = std::pair<std::size_t, int>;  // Neighbours, body.
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (int b = 0; b < static_cast<int>(of_body_.size()); ++b)
@@ -55,7 +65,15 @@ class Elimination {
       else
         eliminate(body, others);
     }
-    return {rank_, dependent_rows()};
+  }
+
+  [[nodiscard]] int rank() const { return rank_; }
+  /// Projection of the vectors onto the vanished combinations.
+  [[nodiscard]] const Mat& projection() {
+    for (Eigen::Index i = 0; i < probes_.rows(); ++i)
+      if (!vanished_[static_cast<std::size_t>(i)]) probes_.row(i).setZero();
+    for (std::size_t k = turns_.size(); k-- > 0;) apply(turns_[k], false);
+    return probes_;
   }
 
  private:
@@ -105,7 +123,7 @@ class Elimination {
   }
 
   void apply(const Turn& t, bool transposed) {
-    Mat part(static_cast<Eigen::Index>(t.slots.size()), kProbes);
+    Mat part(static_cast<Eigen::Index>(t.slots.size()), probes_.cols());
     for (std::size_t i = 0; i < t.slots.size(); ++i)
       part.row(static_cast<Eigen::Index>(i)) = probes_.row(t.slots[i]);
     part = transposed ? Mat(t.Q.transpose() * part) : Mat(t.Q * part);
@@ -162,19 +180,6 @@ class Elimination {
     blocks_[static_cast<std::size_t>(block)] = {};
   }
 
-  /// Rows in which the projection onto the vanished combinations is nonzero.
-  std::vector<char> dependent_rows() {
-    for (Eigen::Index i = 0; i < probes_.rows(); ++i)
-      if (!vanished_[static_cast<std::size_t>(i)]) probes_.row(i).setZero();
-    for (std::size_t k = turns_.size(); k-- > 0;) apply(turns_[k], false);
-    std::vector<char> part(vanished_.size(), 0);
-    const double largest = probes_.size() > 0 ? probes_.cwiseAbs().maxCoeff() : 0.0;
-    for (Eigen::Index i = 0; i < probes_.rows(); ++i)
-      part[static_cast<std::size_t>(i)] =
-          largest > 0.0 && probes_.row(i).cwiseAbs().maxCoeff() > kPart * largest;
-    return part;
-  }
-
   double tolerance_;
   int rank_ = 0;
   std::vector<Block> blocks_;
@@ -187,7 +192,23 @@ class Elimination {
 }  // namespace
 
 LoopRank loop_rank(const std::vector<BodyRows>& rows, int bodies, double tolerance) {
-  return Elimination(rows, bodies, tolerance).run();
+  Elimination elimination(rows, bodies, tolerance, fixed_probes(rows));
+  elimination.run();
+  // Rows in which the projection onto the vanished combinations is nonzero.
+  const Mat& projection = elimination.projection();
+  std::vector<char> part(static_cast<std::size_t>(projection.rows()), 0);
+  const double largest = projection.size() > 0 ? projection.cwiseAbs().maxCoeff() : 0.0;
+  for (Eigen::Index i = 0; i < projection.rows(); ++i)
+    part[static_cast<std::size_t>(i)] =
+        largest > 0.0 && projection.row(i).cwiseAbs().maxCoeff() > kPart * largest;
+  return {elimination.rank(), std::move(part)};
+}
+
+Vec unreachable_part(const std::vector<BodyRows>& rows, int bodies, double tolerance,
+                     const Vec& right_side) {
+  Elimination elimination(rows, bodies, tolerance, right_side);
+  elimination.run();
+  return elimination.projection();
 }
 
 }  // namespace polhode::linear

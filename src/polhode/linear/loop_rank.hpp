@@ -35,4 +35,10 @@ struct LoopRank {
 /// @param tolerance  Smaller pivots are zero [-].
 [[nodiscard]] LoopRank loop_rank(const std::vector<BodyRows>& rows, int bodies, double tolerance);
 
+/// Part of a right-hand side r of G x = r that no x produces: its projection onto the vanishing
+/// combinations of rows. It is nonzero in rows that contradict each other.
+/// @param right_side  By row, one block after the other.
+[[nodiscard]] Vec unreachable_part(const std::vector<BodyRows>& rows, int bodies, double tolerance,
+                                   const Vec& right_side);
+
 }  // namespace polhode::linear

@@ -169,6 +169,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   // Increments are small: the remainder is round-off of the multipliers.
   if (close &&
       (kept || (iterated_again && report.increments.back() < kRoundOffBelow * options.tolerance))) {
+    report.constraints = engine.check(state, trial);  // multipliers have grown since the last one
     engine.end_step(state, trial);
     report.converged = report.hard = true;
     return report;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -18,6 +19,8 @@ namespace {
 struct Rows {
   int interaction = 0, a = kGround, b = kGround;
   Eigen::Matrix<double, Eigen::Dynamic, 12> G;
+  std::vector<int> number{};       ///< Of each row in the system.
+  std::vector<double> per_size{};  ///< Factor by which each was normalised.
 };
 
 std::vector<Rows> constraint_rows(const System& system, const State& state) {
@@ -38,7 +41,7 @@ std::vector<Rows> constraint_rows(const System& system, const State& state) {
       steps, context, no_lambda.data(), state.history.data(),
       [&](int i, const PairStep&, const PairTerms& terms) {
         const InteractionRef& ref = system.interactions()[i];
-        Rows rows{i, ref.a, ref.b, {}};
+        Rows rows{.interaction = i, .a = ref.a, .b = ref.b, .G = {}};
         for (int k = 0; k < ref.rows; ++k) {
           if (terms.compliance[k] != 0.0) continue;
           Eigen::Matrix<double, 1, 12> row = Eigen::Matrix<double, 1, 12>::Zero();
@@ -46,7 +49,10 @@ std::vector<Rows> constraint_rows(const System& system, const State& state) {
           if (ref.b != kGround) row.tail<6>() = terms.G_b.row(k);
           row.segment<3>(3) *= per_length;
           row.tail<3>() *= per_length;
-          if (const double size = row.norm(); size > 0.0) row /= size;
+          const double size = row.norm();
+          if (size > 0.0) row /= size;
+          rows.number.push_back(ref.first_row + k);
+          rows.per_size.push_back(size > 0.0 ? 1.0 / size : 0.0);
           rows.G.conservativeResize(rows.G.rows() + 1, 12);
           rows.G.bottomRows<1>() = row;
         }
@@ -136,7 +142,15 @@ ClusterRows rows_of(const std::vector<Rows>& rows, const std::vector<int>& clust
   return list;
 }
 
+/// Part of a contradiction, relative to the largest, from which on a row is named.
+constexpr double kTakesPart = 1e-3;
+
 }  // namespace
+
+std::string interaction_name(const System& system, int interaction) {
+  const InteractionRef& ref = system.interactions()[interaction];
+  return format("{} '{}'", system.group(ref.group).kind(), system.name(ref));
+}
 
 std::string RankReport::text() const {
   std::string s = format("mobility {}, {} constraint rows, rank {}", mobility, rows, rank);
@@ -163,10 +177,40 @@ RankReport rank_report(const System& system, const State& state, double toleranc
   report.mobility = 6 * system.body_count() - report.rank;
   for (const int i : involved) {
     report.involved.push_back(i);
-    const InteractionRef& ref = system.interactions()[i];
-    report.names.push_back(format("{} '{}'", system.group(ref.group).kind(), system.name(ref)));
+    report.names.push_back(interaction_name(system, i));
   }
   return report;
+}
+
+Contradiction find_contradiction(const System& system, const State& state,
+                                 std::span<const double> right_side, double tolerance) {
+  std::vector<Rows> rows = constraint_rows(system, state);
+  Contradiction found;
+  for (const Rows& r : rows)
+    for (std::size_t k = 0; k < r.number.size(); ++k)
+      found.of = std::max(found.of, std::abs(r.per_size[k] * right_side[r.number[k]]));
+  if (found.of == 0.0) return found;
+  (void)take_out_branches(system, tolerance, rows);
+  std::map<int, double> parts;  // by interaction
+  for (const std::vector<int>& cluster : clusters(system, rows)) {
+    const ClusterRows own = rows_of(rows, cluster);
+    Vec r(static_cast<Eigen::Index>(own.interaction.size()));
+    Eigen::Index at = 0;
+    for (const int k : cluster)
+      for (std::size_t j = 0; j < rows[k].number.size(); ++j)
+        r[at++] = rows[k].per_size[j] * right_side[rows[k].number[j]];
+    if (r.isZero(0.0)) continue;
+    const Vec part = linear::unreachable_part(own.blocks, own.bodies, tolerance, r);
+    for (Eigen::Index j = 0; j < part.size(); ++j) {
+      double& most = parts[own.interaction[static_cast<std::size_t>(j)]];
+      most = std::max(most, std::abs(part[j]));
+      found.part = std::max(found.part, most);
+    }
+  }
+  for (const auto& [interaction, part] : parts)
+    if (part > kTakesPart * found.part)
+      found.names.push_back(interaction_name(system, interaction));
+  return found;
 }
 
 }  // namespace polhode

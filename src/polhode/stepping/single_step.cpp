@@ -8,6 +8,7 @@
 #include <polhode/engines/tree_engine.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/kernels/denormals.hpp>
+#include <polhode/newton/rank_report.hpp>
 #include <polhode/stepping/instant.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/stored_rates.hpp>
@@ -60,6 +61,7 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
       kernels_(&kernels),
       ledger_(system, kernels, *engine_),
       impacts_(system),
+      rows_(system),
       mass_(mass_blocks(system)) {
   trial_.context.ga = ga;
   trial_.context.conserving = conserving;
@@ -131,7 +133,9 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   seconds_[0] += seconds(t0, t1);
   seconds_[1] += seconds(t1, t2);
   state.ledger.iterations += report.iterations;
-  if (report.converged && refused(state, report)) report.converged = false;
+  open_.reset();
+  if (report.converged && (is_open(state, report) || refused(state, report)))
+    report.converged = false;
   if (!report.converged) {
     restore_stored_rates(state);
     return report;
@@ -179,6 +183,19 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   ledger_.after_commit(state, trial_);
   seconds_[2] += seconds(t2, Clock::now());
   return report;
+}
+
+/// Small increments do not close rows that contradict each other: with the proximal iteration the
+/// bodies stay where the gaps are smallest, and the multipliers grow for ever. @eq{row-tolerance}
+bool SingleStep::is_open(const State& state, NewtonReport& report) {
+  if (system_->rows() == 0 || rows_.surely_hold(report.constraints, to_round_off_) ||
+      rows_.hold(state, trial_, to_round_off_))
+    return false;
+  open_ = rows_.open();
+  report.reason =
+      format("{} remains at {}", open_->gap_text(), interaction_name(*system_, open_->interaction));
+  report.worst.clear();
+  return true;
 }
 
 bool SingleStep::refused(const State& state, NewtonReport& report) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <polhode/newton/newton.hpp>
+#include <polhode/newton/row_check.hpp>
 #include <polhode/stepping/impact_resolver.hpp>
 #include <polhode/stepping/ledger.hpp>
 
@@ -35,6 +36,12 @@ class SingleStep {
   /// Whether a joint stop was active in the last accepted trial.
   [[nodiscard]] bool stopped() const { return stopped_; }
 
+  /// Requires rows to hold to round-off: in shorter steps after one whose rows did not hold, which
+  /// may be so short that any gap is below the tolerance.
+  void hold_to_round_off(bool yes) { to_round_off_ = yes; }
+  /// The open row if the last trial was refused because not all rows hold.
+  [[nodiscard]] const std::optional<OpenRow>& open_row() const { return open_; }
+
   EnergyLedger& ledger() { return ledger_; }
   [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
   [[nodiscard]] const NewtonEngine& engine() const { return *engine_; }
@@ -44,6 +51,8 @@ class SingleStep {
   void predict(const State& state, const Predictor& predictor);
   /// Whether an interaction rejects the configuration reached; reports which and why.
   [[nodiscard]] bool refused(const State& state, NewtonReport& report) const;
+  /// Whether a row of a converged trial does not hold; reports which.
+  [[nodiscard]] bool is_open(const State& state, NewtonReport& report);
   void commit_histories(State& state, double rotation);
   void estimate_error();
   [[nodiscard]] bool meets_barrier(const State& state) const;
@@ -54,6 +63,7 @@ class SingleStep {
   EnergyLedger ledger_;
   ImpactResolver impacts_;
   std::optional<LeastReactions> reactions_;  ///< If friction depends on redundant ones.
+  RowCheck rows_;
   Trial trial_;
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;
@@ -62,6 +72,8 @@ class SingleStep {
   std::vector<int> eager_, lazy_;
   std::vector<int> always_queried_;  ///< Interactions whose acceptance is always queried.
   double error_ = 0.0;
+  std::optional<OpenRow> open_;
+  bool to_round_off_ = false;
   bool jumped_ = false, stopped_ = false;
   double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.
 };

@@ -5,6 +5,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/dynamics/composition.hpp>
+#include <polhode/stepping/contradiction.hpp>
 #include <polhode/stepping/drive_kinks.hpp>
 #include <polhode/stepping/local_error.hpp>
 #include <polhode/stepping/single_step.hpp>
@@ -20,21 +21,6 @@
 namespace polhode {
 
 using namespace step_control;
-
-namespace {
-
-/// Part of a sentence about possible causes: the first joint whose friction or stop may lock it.
-std::string locking_joint(const System& system) {
-  for (const InteractionRef& ref : system.interactions()) {
-    const InteractionTraits& traits = system.traits(ref);
-    if (traits.rows > 0 && traits.works && !traits.prescribes)
-      return format("friction or a stop that locks {} '{}', ", system.group(ref.group).kind(),
-                    traits.name);
-  }
-  return {};
-}
-
-}  // namespace
 
 struct Stepper::Impl {
   const System& system;
@@ -388,6 +374,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
   report.t = state.t;
   if (report.accepted) return report;
   const double start = state.t;
+  single.hold_to_round_off(false);
   const TimeBreak ahead = next_break(state);
   const double limit = std::min(t_limit, landing(ahead));
   if (automatic() && (state.dt_next <= 0.0 || state.easy_steps == kFindAnew)) {
@@ -401,6 +388,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
   double wanted = next_length(state, t_limit, landing(ahead));
   bool fresh = false;
   Refused refused;
+  std::string gap;  // left by the first trial whose rows did not all hold
   for (;;) {
     const double H = wanted;
     if (composed() || automatic()) before = state;
@@ -441,6 +429,13 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     state.ledger.iterations = iterations;
     ++state.ledger.rejected;
     ++report.rejected;
+    if (const auto& open = single.open_row(); open && !report.newton.converged && gap.empty()) {
+      gap = gap_text(system, *open, H);
+      // A shorter step would only make the gap smaller.
+      report.message = contradiction_text(system, state, H, gap);
+      if (!report.message.empty()) return report;
+      single.hold_to_round_off(true);
+    }
     wanted *= report.newton.converged ? std::min(verdict.factor, 0.9) : 0.5;
     state.easy_steps = 0;
     fresh = !report.newton.converged;
@@ -448,12 +443,13 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     if (H > least_step()) {
       wanted = std::max(wanted, least_step());
     } else {
-      report.message = format(
-          "{} Steps down to {:.2g} s were tried. Look for a singular position of the joints, "
-          "{}very "
-          "stiff loads or springs, and masses that differ by many orders of magnitude. 'polhode "
-          "check --tangents' compares the derivatives of all forces.",
-          report.newton.text(), least_step(), locking_joint(system));
+      report.message = limit_text(system, state, gap);
+      if (report.message.empty())
+        report.message = format(
+            "{} Steps down to {:.2g} s were tried. Look for a singular position of the joints, "
+            "{}very stiff loads or springs, and masses that differ by many orders of magnitude. "
+            "'polhode check --tangents' compares the derivatives of all forces.",
+            report.newton.text(), least_step(), locking_joint(system));
       return report;
     }
   }
