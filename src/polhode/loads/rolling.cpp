@@ -81,10 +81,10 @@ void Rolling::evaluate(const PairStep& step, PairTerms& t) const {
   const Vector slip = pair.slip(middle - r_a.mean(0.5), arm) + excess * cross(turn, arm);
   const Dual height = dot(k.at_n1, c.at_n1 - x_a.at_n1) - circle_ * sin_n1 - edge_;
   pair.set_row(0, height, d[0], arm_a, arm_b, t);
-  for (int k = 1; k < 3; ++k) {
+  for (int row = 1; row < 3; ++row) {
     const Vec3 couple =
-        conserving ? contact::value(excess * cross(arm_b, d[k])) : Vec3(Vec3::Zero());
-    pair.set_row(k, dot((k == 1 ? e_1 : e_2).mean(0.5), slip), d[k], arm_a, arm_b, t, couple);
+        conserving ? contact::value(excess * cross(arm_b, d[row])) : Vec3(Vec3::Zero());
+    pair.set_row(row, dot((row == 1 ? e_1 : e_2).mean(0.5), slip), d[row], arm_a, arm_b, t, couple);
   }
   clear_ground_sides(step, t);
 }
