@@ -432,7 +432,9 @@ struct Simulation::Impl {
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
     velocity_scale = std::max(velocity_scale, v.scale);
-    if (v.residual_before > std::max(velocity_residual, rounding_of_velocities())) {
+    // Those of the start are projected, or belong to drives that contradict each other.
+    if (state.ledger.steps > 0 &&
+        v.residual_before > std::max(velocity_residual, rounding_of_velocities())) {
       velocity_residual = v.residual_before;
       velocity_time = state.t;
     }
