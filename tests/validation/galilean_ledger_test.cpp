@@ -67,7 +67,9 @@ void expect_invariance(const std::string& text, const std::string& what, const s
   EXPECT_NEAR(moves.work, rest.work + u.dot(rest.impulse), within * scale);
   // Nothing but the stage is on the ground: its impulse is all the momentum
   // that came in.
-  if (alone) EXPECT_LT((rest.impulse - rest.gained).head<2>().norm(), within * scale);
+  if (alone) {
+    EXPECT_LT((rest.impulse - rest.gained).head<2>().norm(), within * scale);
+  }
   for (const Seen* seen : {&rest, &moves}) {
     EXPECT_LT(seen->summary.energy_drift, 1e-9);
     EXPECT_LT(seen->summary.linear_momentum_drift, 1e-9);

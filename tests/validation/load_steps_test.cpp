@@ -228,7 +228,9 @@ TEST(LoadSteps, StopsOfASliderAct) {
         const double end = free < -0.05 && lower ? -0.05 : free > 0.05 && upper ? 0.05 : free;
         EXPECT_NEAR(z, end, 1e-4) << limits << force << ", load steps " << load_steps;
         EXPECT_NEAR(stop, 100.0 * z - force, 1e-6) << limits << force;
-        if (end == free) EXPECT_NEAR(z, free, 1e-12) << limits << force;
+        if (end == free) {
+          EXPECT_NEAR(z, free, 1e-12) << limits << force;
+        }
       }
 }
 

@@ -167,7 +167,9 @@ analysis: {type: dynamics, duration: 1 s, step: )") +
     const RunSummary summary = s.run();
     EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
     const JointReport j = s.joint(0);
-    if (std::string(step) == "0.1 ms") EXPECT_NEAR(s.body(0).r.x(), 2.0, 1e-6);
+    if (std::string(step) == "0.1 ms") {
+      EXPECT_NEAR(s.body(0).r.x(), 2.0, 1e-6);
+    }
     EXPECT_NEAR(s.body(0).r.x(), 0.2 * j.coordinates.back(), 1e-12) << step;
     EXPECT_LT(summary.energy_drift, 1e-12) << step;
   }
