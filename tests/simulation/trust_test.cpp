@@ -55,28 +55,26 @@ TEST(Trust, IsLostToNumericalDissipationAndComesBackWithTheStep) {
 }
 
 TEST(Trust, AllowsAnExactMethodRoundOffAndOthersErrorsOfSecondOrder) {
-  const Model model = io::read_model_text(kStiff, "trust.yaml", {"analysis.rho_inf=1"});
-  AnalysisSpec analysis = model.analysis;
-  const double exact = allowed_drift(analysis);
-  analysis.conserving = false;
-  EXPECT_GT(allowed_drift(analysis), exact);
-  analysis.conserving = true;
-  analysis.rho_inf = 0.9;
-  EXPECT_GT(allowed_drift(analysis), exact);
+  Model model = io::read_model_text(kStiff, "trust.yaml", {"analysis.rho_inf=1"});
+  const double exact = allowed_drift(model);
+  model.analysis.conserving = false;
+  EXPECT_GT(allowed_drift(model), exact);
+  model.analysis.conserving = true;
+  model.analysis.rho_inf = 0.9;
+  EXPECT_GT(allowed_drift(model), exact);
 }
 
 TEST(Trust, NamesEachBalanceAndConstraint) {
   const Simulation s(io::read_model_text(kStiff, "trust.yaml", {"analysis.rho_inf=1"}));
-  const AnalysisSpec& analysis = s.model().analysis;
   Ledger ledger;
   ledger.energy_scale = ledger.p_scale = ledger.l_scale = 1.0;
-  EXPECT_THAT(reasons_for_distrust(analysis, s.system(), ledger), IsEmpty());
-  const double allowed = allowed_drift(analysis);
+  EXPECT_THAT(reasons_for_distrust(s.model(), s.system(), ledger), IsEmpty());
+  const double allowed = allowed_drift(s.model());
   ledger.energy_drift = ledger.p_drift = ledger.l_drift = allowed;
-  EXPECT_THAT(reasons_for_distrust(analysis, s.system(), ledger), IsEmpty());
+  EXPECT_THAT(reasons_for_distrust(s.model(), s.system(), ledger), IsEmpty());
   ledger.p_drift = ledger.l_drift = 1.01 * allowed;
   ledger.constraint_max = 1e-3;
-  EXPECT_THAT(reasons_for_distrust(analysis, s.system(), ledger),
+  EXPECT_THAT(reasons_for_distrust(s.model(), s.system(), ledger),
               testing::ElementsAre(HasSubstr("linear momentum"), HasSubstr("angular momentum"),
                                    HasSubstr("joints or drives do not hold")));
 }

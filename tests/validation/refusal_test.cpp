@@ -180,8 +180,7 @@ TEST(StepRefusal, KeepsTheLastGoodStateWhenALoadHasNoValue) {
   Simulation s(hopeless());
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::not_converged);
-  EXPECT_THAT(r.message, testing::HasSubstr("body 'arm'"));
-  EXPECT_THAT(r.message, testing::HasSubstr("t = "));
+  EXPECT_THAT(r.message, testing::HasSubstr("load 'push' is not a finite number at t = "));
   // The last accepted state is kept.
   EXPECT_NEAR(r.t, 0.05, 0.0101);
   EXPECT_TRUE(s.body(0).r.allFinite());

@@ -19,19 +19,19 @@ FreeDisplacement along(const GearCoordinate& c, const Vec3& direction) {
 }
 
 /// Angle of the wheel (the first body) relative to the line of centres, −atan2(S, C), of constant
-/// length ρ: with x = ½Δ, μ = −(x/sin x)(cos φ ∇S − sin φ ∇C)/ρ is its discrete gradient.
-/// @eq{gear-angle}
+/// length ρ: with x = ½Δ, μ = −(x/sin x)(cos φ ∇S − sin φ ∇C)/ρ is its discrete gradient. Not
+/// conserving, as in statics, it is the gradient at t_{n+αf}. @eq{gear-angle}
 CoordinateMotion centres_step(const GearCoordinate& c, const BodyStep& a, const BodyStep& b,
-                              double at_n, double radius) {
-  const CoordinateMotion C = coordinate_motion(along(c, c.angle.E), a, b, 0.0, true);
-  const CoordinateMotion S = coordinate_motion(along(c, c.angle.F), a, b, 0.0, true);
+                              double at_n, double radius, bool conserving) {
+  const CoordinateMotion C = coordinate_motion(along(c, c.angle.E), a, b, 0.0, conserving);
+  const CoordinateMotion S = coordinate_motion(along(c, c.angle.F), a, b, 0.0, conserving);
   CoordinateMotion q;
   const double af = a.alpha_f;
   const double psi_n = -at_n, psi_n1 = nearest_turn(std::atan2(S.at_n1, C.at_n1), psi_n);
   const double psi = (1.0 - af) * psi_n + af * psi_n1, cos = std::cos(psi), sin = std::sin(psi);
   const double size = C.at_n1 * C.at_n1 + S.at_n1 * S.at_n1;
   const double rho = radius > 0.0 ? radius : std::sqrt(size);
-  const auto [w, w_x] = over_sine(0.5 * (psi_n1 - psi_n));
+  const auto [w, w_x] = conserving ? over_sine(0.5 * (psi_n1 - psi_n)) : std::pair(1.0, 0.0);
   q.at_n = at_n;
   q.at_n1 = -psi_n1;
   q.at_alpha = -psi;
@@ -145,7 +145,7 @@ CoordinateMotion Gear::coordinate(int i, const PairStep& step) const {
     case Kind::displacement:
       return placed(c, coordinate_motion(c.displacement, e.from, e.to, 0.0, conserving));
     case Kind::centres:
-      return placed(c, centres_step(c, e.from, e.to, at_n, rho));
+      return placed(c, centres_step(c, e.from, e.to, at_n, rho, conserving));
     // the angle of the other's axis relative to the wheel decreases as the wheel turns
     case Kind::axes:
       return negative(

@@ -163,7 +163,7 @@ RunSummary Simulation::summary() const {
   r.order = s.method.control.order;
   r.narration = s.narration;
   r.warnings = s.warnings();
-  if (!s.statics) r.distrust = reasons_for_distrust(s.model.analysis, s.system, l);
+  if (!s.statics) r.distrust = reasons_for_distrust(s.model, s.system, l);
   for (const std::string& reason : r.distrust) r.warnings.push_back("not trusted: " + reason);
   for (int e = 0; e < static_cast<int>(s.map.events.size()); ++e) {
     const auto of = [&](EventMemory::Entry k) { return s.events->memory(s.state, e, k); };

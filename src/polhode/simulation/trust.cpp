@@ -22,15 +22,17 @@ constexpr double kConstraints = 1e-6;
 
 }  // namespace
 
-double allowed_drift(const AnalysisSpec& a) {
-  const bool exact = a.rho_inf == 1.0 && a.conserving && a.momentum_rate == "momentum";
+double allowed_drift(const Model& model) {
+  const AnalysisSpec& a = model.analysis;
+  const bool exact = a.rho_inf == 1.0 && a.conserving && a.momentum_rate == "momentum" &&
+                     !model.contacts.nonsmooth();
   return exact ? kExactBalance : kPlainBalance;
 }
 
-std::vector<std::string> reasons_for_distrust(const AnalysisSpec& analysis, const System& system,
+std::vector<std::string> reasons_for_distrust(const Model& model, const System& system,
                                               const Ledger& ledger) {
   std::vector<std::string> reasons;
-  const double allowed = allowed_drift(analysis);
+  const double allowed = allowed_drift(model);
   const Drifts drift = drifts(ledger);
   const auto balance = [&](const char* what, double value) {
     if (value <= allowed) return;
@@ -38,12 +40,12 @@ std::vector<std::string> reasons_for_distrust(const AnalysisSpec& analysis, cons
         format("the balance of {} does not close: its drift is {:.2g}, and the method allows {:g}. "
                "Take shorter steps{}",
                what, value, allowed,
-               analysis.rho_inf < 1.0 ? ", or rho_inf: 1, which does not dissipate" : ""));
+               model.analysis.rho_inf < 1.0 ? ", or rho_inf: 1, which does not dissipate" : ""));
   };
   balance("energy", drift.energy);
   // Below rho_inf = 1 a step weights the forces of its neighbours: sums of impulses and momenta
   // differ by a part of a step's impulse, which is no error of the motion.
-  if (analysis.rho_inf == 1.0) {
+  if (model.analysis.rho_inf == 1.0) {
     balance("linear momentum", drift.linear_momentum);
     balance("angular momentum", drift.angular_momentum);
   }

@@ -9,13 +9,14 @@
 
 namespace polhode {
 
-/// Largest relative drift of the balances that a method allows [-]: with exact conservation that of
-/// round-off over any run, otherwise that of second-order errors.
-[[nodiscard]] double allowed_drift(const AnalysisSpec& analysis);
+/// Largest relative drift of the balances that a model's method allows [-]: with exact conservation
+/// that of round-off over any run, otherwise that of second-order errors. The non-smooth law of
+/// contact is not exact: its impulses are iterated to a tolerance.
+[[nodiscard]] double allowed_drift(const Model& model);
 
 /// Reasons not to trust a run so far, a sentence each: a balance of energy or momentum that does
 /// not close, or constraints that do not hold, to what the method can reach. @eq{trust}
-[[nodiscard]] std::vector<std::string> reasons_for_distrust(const AnalysisSpec& analysis,
+[[nodiscard]] std::vector<std::string> reasons_for_distrust(const Model& model,
                                                             const System& system,
                                                             const Ledger& ledger);
 
