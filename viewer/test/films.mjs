@@ -31,7 +31,7 @@ await test("a film has the pictures that were asked for", async () => {
   expect(readFileSync(join(folder, "pictures/00002.png")).subarray(1, 4).toString() === "PNG", "no pictures in the folder");
   mkdirSync(join(folder, "made/film.gif"), { recursive: true });  // a folder of that name, so that writing fails after drawing
   for (const [words, text] of [[["film.avi"], "cannot write '.avi' files"], [["film.gif", "--size", "10"], "Write it as 640x400"], [["film.gif", "--from", "3"], "the recording goes from 0 to 1 s"],
-    [["no/such/film.gif"], "no/such/film.gif: cannot be written: its folder does not exist. Make the folder first."], [["made/film.gif", "--to", "0.2"], "made/film.gif: cannot be replaced"]])
+    [["no/such/film.gif"], "no/such/film.gif: cannot be written: its folder does not exist. Make the folder first."], [["made/film.gif", "--to", "0.2"], "made/film.gif: is a folder. Name a file."]])
     expect(refusal(["convert", "all.results", ...words]).includes(text), refusal(["convert", "all.results", ...words]));
 });
 

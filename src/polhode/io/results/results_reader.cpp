@@ -297,7 +297,8 @@ ResultsReader::ResultsReader(const std::string& path, Once) : impl_(std::make_un
     const Id columns(H5Aopen(m.file.get(), results::kChecksumColumns, H5P_DEFAULT), H5Aclose);
     double wanted = -1.0;
     H5Aread(columns.get(), H5T_NATIVE_DOUBLE, &wanted);
-    if (wanted != static_cast<double>(m.checked))
+    // A file that is cut short has lost those at its end, and is shown as far as it goes.
+    if (!m.copy && wanted != static_cast<double>(m.checked))
       m.fail("is damaged: data sets are missing", rerun);
   }
 }
