@@ -294,6 +294,12 @@ ResultsReader::ResultsReader(const std::string& path, Once) : impl_(std::make_un
   if (!time.valid()) m.fail("has no data set '/time'");
   m.frames = extent(time.get())[0];
   H5Ovisit(m.file.get(), H5_INDEX_NAME, H5_ITER_INC, Impl::visit, &m);
+  if (m.copy && m.frames > 1) {  // times that are lost read as zero
+    const std::vector<double> times = m.frames_of(m.open(results::kTime), results::kTime, 1);
+    std::size_t rising = 1;
+    while (rising < times.size() && times[rising] > times[rising - 1]) ++rising;
+    m.frames = std::min(m.frames, rising);
+  }
   if (H5Aexists(m.file.get(), results::kChecksumColumns) > 0) {
     const Id columns(H5Aopen(m.file.get(), results::kChecksumColumns, H5P_DEFAULT), H5Aclose);
     double wanted = -1.0;
