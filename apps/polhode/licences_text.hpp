@@ -3,7 +3,7 @@
 
 namespace polhode::cli {
 
-/// What the program contains, with the licences: THIRD_PARTY.md as of the build.
+/// Contents of the program with their licences: THIRD_PARTY.md as of the build.
 [[nodiscard]] const char* licences_text();
 
 }  // namespace polhode::cli

@@ -10,7 +10,7 @@ namespace polhode {
 /// Largest input file [bytes]: longer ones are refused rather than read until memory ends.
 inline constexpr std::uint64_t kLargestInput = std::uint64_t{1} << 36;
 
-/// What prevents the reading of a file, and what to do.
+/// Cause that prevents the reading of a file, and a hint.
 struct InputFault {
   std::string what, hint;
 };
