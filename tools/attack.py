@@ -9,7 +9,7 @@
     tools/attack.py --keep FOLDER         inputs of faults are kept there
 
 Kinds: models (words and bytes of model files changed), meshes (bytes of mesh and surface files), results (results.h5 cut or
-with changed bytes, read by convert, plot and view), checkpoints (changed bytes, which must be refused, and forged ones with a
+with changed bytes, read by convert, plot and view; numbers that are shown must be those of the run), checkpoints (changed bytes, which must be refused, and forged ones with a
 valid checksum), kills (kill -9 at a random time, restart, and comparison of all files with a run in one go).
 
 An attack fails if the program is ended by a signal, does not end, reports an internal error, or accepts what must be refused;
@@ -59,6 +59,28 @@ bodies:
 contacts: {default: {friction: 0.3}}
 analysis: {duration: 0.1, step: 2 ms}
 output: {every: 4 ms}
+""",
+}
+
+# Models whose results alone are attacked: a deformable solid, and a beam on a hinge.
+READ_MODELS = {
+    "pad": """format: 1
+gravity: [0, 0, -9.81]
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1e6, poisson_ratio: 0.3, density: 1000}}
+bodies: {block: {mass: 2, inertia: [1, 1, 1], position: [0.5, 0.5, 1.5]}}
+solids: {pad: {mesh: {block: {size: [1, 1, 1], cells: [2, 2, 2]}, position: [0.5, 0.5, 0.5]}, material: rubber,
+  bonded: {ground: {plane: {axis: z, at: min}}, block: {plane: {axis: z, at: max}}}}}
+analysis: {duration: 0.1, step: 2 ms}
+output: {every: 2 ms}
+""",
+    "whip": """format: 1
+gravity: [0, 0, -9.81]
+materials: {steel: {type: elastic, youngs_modulus: 210 GPa, poisson_ratio: 0.3, density: 7800}}
+sections: {rod: {type: circle, diameter: 1 cm, material: steel}}
+beams: {whip: {points: [[0, 0, 0], [1, 0, 0]], elements: 6, section: rod, up: z}}
+joints: {hinge: {type: revolute, bodies: [ground, whip.start], at: [0, 0, 0], axis: y}}
+analysis: {duration: 0.2, step: 1 ms}
+output: {every: 1 ms}
 """,
 }
 
@@ -127,6 +149,17 @@ class Attacks:
             ended(["run", model, "-o", run, "--quiet"], folder, {0})
             # The checkpoint of the middle: a run writes its last state when it is stopped.
             self.runs[name] = (model, run, self.checkpoint_of(model, run))
+        self.results = {name: run for name, (_, run, _) in self.runs.items()}
+        for name, text in READ_MODELS.items():
+            model, self.results[name] = folder / f"{name}.yaml", folder / name
+            model.write_text(text)
+            ended(["run", model, "-o", folder / name, "--quiet"], folder, {0})
+        self.tables = {name: self.table_of(run / "results.h5") for name, run in self.results.items()}
+
+    def table_of(self, results):
+        """Rows of numbers of a results file, without the line of names and units."""
+        ended(["convert", results, "table.csv"], self.folder, {0})
+        return (self.folder / "table.csv").read_text().splitlines()[1:]
 
     def checkpoint_of(self, model, run):
         """A checkpoint of a run that its time limit has stopped."""
@@ -154,9 +187,9 @@ class Attacks:
         return ended(["check", file], self.folder), [file, mesh]
 
     def results_attack(self, dice):
-        name = dice.choice(sorted(self.runs))
-        good = (self.runs[name][1] / "results.h5").read_bytes()
-        if dice.random() < 1 / 6:
+        name = dice.choice(sorted(self.results))
+        good = (self.results[name] / "results.h5").read_bytes()
+        if dice.random() < 1 / 3:
             data = good[:dice.randrange(len(good))]
         else:
             data = bytearray(good)
@@ -164,11 +197,17 @@ class Attacks:
             for _ in range(dice.choice((1, 1, 4, 16))):
                 at = dice.randrange(len(good) if dice.random() < 0.5 else min(len(good), 30000))
                 data[at] ^= 1 << dice.randrange(8)
-        file = self.folder / "attacked.h5"
+        file, table = self.folder / "attacked.h5", self.folder / "attacked.csv"
         file.write_bytes(data)
-        reader = dice.choice((["convert", file, "attacked.csv"], ["plot", file, "energy"], ["view", file, "--html", "attacked.html", "--quiet"],
-                              ["convert", file, "attacked.vtkhdf"], ["plot", file]))
-        return ended(reader, self.folder), [file]
+        table.unlink(missing_ok=True)
+        reader = dice.choice((["convert", file, table], ["convert", file, table], ["plot", file, "energy"], ["plot", file],
+                              ["view", file, "--html", "attacked.html", "--quiet"], ["convert", file, "attacked.vtkhdf"]))
+        code, said = ended(reader, self.folder)
+        if code == 0 and table in reader:
+            rows = table.read_text(errors="replace").splitlines()[1:]
+            if not rows or rows != self.tables[name][:len(rows)] or (len(data) == len(good) and len(rows) != len(self.tables[name])):
+                raise Fault(f"wrong numbers are shown of {name}, {len(data)} of {len(good)} bytes")
+        return (code, said), [file]
 
     def checkpoints_attack(self, dice):
         name = dice.choice(sorted(self.runs))

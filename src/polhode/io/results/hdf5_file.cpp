@@ -183,10 +183,11 @@ struct Hdf5File::Impl {
     const Id type = text_type();  // Of any length: Python reads it as text, not as bytes.
     const char* text = value.c_str();
     const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-    if (H5Aexists(object, name.c_str()) > 0)  // of the run that is continued
-      require(H5Adelete(object, name.c_str()), "cannot be written");
+    // A new text takes the place of the old one, so that the header of the object does not grow.
     const Id attribute(
-        H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aexists(object, name.c_str()) > 0
+            ? H5Aopen(object, name.c_str(), H5P_DEFAULT)
+            : H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
         H5Aclose);
     if (!attribute.valid()) fail("cannot be written");
     require(H5Awrite(attribute.get(), type.get(), &text), "cannot be written");
@@ -276,14 +277,20 @@ struct Hdf5File::Impl {
 
   void write_held() {
     if (held_frames == 0) return;
+    // Nobody reads a file without a name: its time comes first, so that its index does not lie
+    // behind the frames, where a cut would take it.
+    const bool first = written == 0 && unnamed;
+    if (first) write_channel(0, 0);
     std::size_t offset = channels[0].size();
     for (std::size_t i = 1; i < channels.size(); ++i) {
       write_channel(i, offset);
       offset += channels[i].size();
     }
     flush_file();
-    write_channel(0, 0);  // The time last: its length is the number of complete frames.
-    flush_file();
+    if (!first) {
+      write_channel(0, 0);  // The time last: its length is the number of complete frames.
+      flush_file();
+    }
     written += held_frames;
     held_frames = 0;
     held.clear();

@@ -204,8 +204,7 @@ struct ResultsReader::Impl {
   /// Compares the numbers that were read with their checksums, of files that have them.
   void check(const Id& dataset, const std::string& name, std::size_t every,
              const std::vector<double>& values) const {
-    // A file that is cut short may have lost checksums of frames whose numbers are complete.
-    if (copy || values.empty() || H5Aexists(dataset.get(), results::kChecksumColumn) <= 0) return;
+    if (values.empty() || H5Aexists(dataset.get(), results::kChecksumColumn) <= 0) return;
     const Id attribute(H5Aopen(dataset.get(), results::kChecksumColumn, H5P_DEFAULT), H5Aclose);
     double column = -1.0;
     H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &column);
@@ -230,7 +229,7 @@ struct ResultsReader::Impl {
   static herr_t visit(hid_t object, const char* name, const H5O_info_t* info, void* data) {
     auto& self = *static_cast<Impl*>(data);
     const std::string path = std::string("/") + name;
-    if (info->type != H5O_TYPE_DATASET || path == results::kChecksums) return 0;
+    if (info->type != H5O_TYPE_DATASET) return 0;
     const Id dataset(H5Dopen2(object, name, H5P_DEFAULT), H5Dclose);
     const Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
     // Growing data sets are stored in chunks; lists are not, and views are virtual.
@@ -238,9 +237,10 @@ struct ResultsReader::Impl {
     const std::vector<hsize_t> dims = extent(dataset.get());
     if (dims.empty()) return 0;
     if (H5Aexists(dataset.get(), results::kChecksumColumn) > 0) ++self.checked;
-    if (self.copy)
+    if (self.copy)  // A frame without its checksums is not complete either.
       self.frames =
           std::min<std::size_t>(self.frames, frames_before(dataset.get(), self.end, self.frames));
+    if (path == results::kChecksums) return 0;
     self.sets.push_back(
         {path, {dims.begin() + 1, dims.end()}, attribute_of(dataset.get(), "unit")});
     return 0;
@@ -293,19 +293,14 @@ ResultsReader::ResultsReader(const std::string& path, Once) : impl_(std::make_un
   const Id time = m.open(results::kTime);
   if (!time.valid()) m.fail("has no data set '/time'");
   m.frames = extent(time.get())[0];
-  H5Ovisit(m.file.get(), H5_INDEX_NAME, H5_ITER_INC, Impl::visit, &m);
-  if (m.copy && m.frames > 1) {  // times that are lost read as zero
-    const std::vector<double> times = m.frames_of(m.open(results::kTime), results::kTime, 1);
-    std::size_t rising = 1;
-    while (rising < times.size() && times[rising] > times[rising - 1]) ++rising;
-    m.frames = std::min(m.frames, rising);
-  }
+  const bool all = H5Ovisit(m.file.get(), H5_INDEX_NAME, H5_ITER_INC, Impl::visit, &m) >= 0;
+  // The index of every data set is stored with the first frame.
+  if (m.copy && (!all || m.frames == 0)) m.fail("is cut short, and has no complete frame", rerun);
   if (H5Aexists(m.file.get(), results::kChecksumColumns) > 0) {
     const Id columns(H5Aopen(m.file.get(), results::kChecksumColumns, H5P_DEFAULT), H5Aclose);
     double wanted = -1.0;
     H5Aread(columns.get(), H5T_NATIVE_DOUBLE, &wanted);
-    // A file that is cut short has lost those at its end, and is shown as far as it goes.
-    if (!m.copy && wanted != static_cast<double>(m.checked))
+    if (wanted != static_cast<double>(m.checked))
       m.fail("is damaged: data sets are missing", rerun);
   }
 }

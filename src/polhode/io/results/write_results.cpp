@@ -143,16 +143,25 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.attribute(r::kProvenance, "instruction_set", provenance.instruction_set);
   file_.attribute(r::kProvenance, "model_file", provenance.model_file);
   file_.attribute(r::kProvenance, "overrides", lines(provenance.overrides));
+  // The verdict is known at the end of the run. Its place is kept here: a part of the header that
+  // is added later lies behind all frames, and a file cut short would lose the whole group.
+  conclude_with("", {});
   // A list of one text: attributes are limited to 64 KB, models may be longer.
   file_.names(join(r::kProvenance, "model"), {provenance.model_text});
 }
 
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
-  return ResultsFile(Hdf5File::append_to(path, plan_results(layout).channels, t));
+  ResultsFile file(Hdf5File::append_to(path, plan_results(layout).channels, t));
+  file.conclude_with("", {});  // The verdict of the run that is continued is none on this one.
+  return file;
 }
 
 void ResultsFile::conclude(const std::vector<std::string>& distrust) {
-  file_.attribute(results::kProvenance, "trusted", distrust.empty() ? "yes" : "no");
+  conclude_with(distrust.empty() ? "yes" : "no", distrust);
+}
+
+void ResultsFile::conclude_with(const char* trusted, const std::vector<std::string>& distrust) {
+  file_.attribute(results::kProvenance, "trusted", trusted);
   file_.attribute(results::kProvenance, "distrust", lines(distrust));
 }
 

@@ -111,6 +111,7 @@ class ResultsFile {
 
  private:
   explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
+  void conclude_with(const char* trusted, const std::vector<std::string>& distrust);
 
   Hdf5File file_;
   std::vector<double> numbers_;
