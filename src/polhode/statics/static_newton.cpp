@@ -228,6 +228,17 @@ void StaticNewton::aim(std::vector<double>& du) const {
   }
 }
 
+/// Counts the turns of bodies up to work_.
+void StaticNewton::count_turns() {
+  for (int i : turns_) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    double* history = work_.history.data() + ref.first_history;
+    system_->group(ref.group).commit(
+        ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
+  }
+}
+
 /// Moves work_ by part of x_; stresses are extrapolated by the whole of it. @returns the largest
 /// scaled increment of the whole.
 double StaticNewton::apply(double part, StaticStep& step) {
@@ -278,13 +289,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
       }
     most = std::max(most, per_size * nodes_.advance(du_.data(), trial_, here_));
   }
-  for (int i : turns_) {
-    const InteractionRef& ref = system_->interactions()[i];
-    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
-    double* history = work_.history.data() + ref.first_history;
-    system_->group(ref.group).commit(
-        ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
-  }
+  count_turns();
   if (worst_node >= 0)
     step.worst = system_->nodes().node_name(worst_node);
   else if (worst_body >= 0)

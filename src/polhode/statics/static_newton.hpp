@@ -53,6 +53,9 @@ class StaticNewton {
   /// @param slack  Parts may fall before they carry load. Otherwise the search ends where a motion
   /// of half the model's size meets no resistance.
   StaticStep relax(State& state, double load_factor, bool slack);
+  /// The rows that no positions of the bodies satisfy at a load factor, near a state, whatever the
+  /// forces. Derivation: @eq{statics-gap}
+  [[nodiscard]] RowGap least_gap(const State& state, double load_factor);
   /// Sets StaticOptions::stop.
   void set_stop(const std::atomic<bool>* stop) { options_.stop = stop; }
 
@@ -80,6 +83,9 @@ class StaticNewton {
   void start_at(const State& state);
   void place_bodies();
   void start_scratch(const State& state);
+  double assemble_gap(Vec& rhs, Vec& sizes);
+  void name_open(const Vec& rhs, const Vec& sizes, RowGap& found) const;
+  void count_turns();
   ElementReport assemble();
   void choose_scale();
   [[nodiscard]] Balance balanced(StaticStep& step) const;
@@ -135,6 +141,7 @@ class StaticNewton {
   bool resisted_ = false;         ///< Ill-conditioned in this search, without free motions.
   bool shifted_ = false;          ///< The last factorisation is of a shifted tangent.
   std::vector<int> turns_;        ///< Interactions whose history counts turns.
+  std::vector<char> lengths_;     ///< By row: its value is a length, see assemble_gap().
 };
 
 }  // namespace polhode

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <polhode/newton/row_check.hpp>
+
 namespace polhode {
 
 /// Search at one load factor.
@@ -19,6 +21,12 @@ struct StaticStep {
   std::string reason;    ///< If not converged: "diverges" ...
   std::string worst;     ///< Largest increment or residual: "body 'forearm'".
   std::vector<std::string> free_motions;  ///< Motions without stiffness, found in the search.
+};
+
+/// Rows that cannot all hold at a load factor.
+struct RowGap {
+  std::vector<std::string> names;  ///< "joint 'elbow'"; empty: they can.
+  OpenRow open;                    ///< The drive among them, or another, with the whole gap.
 };
 
 /// A load at which the stability of the equilibrium changes: a limit point or a branch.

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/math/quaternion.hpp>
+#include <polhode/newton/rank_report.hpp>
 #include <polhode/statics/static_branches.hpp>
 #include <polhode/statics/statics.hpp>
 #include <polhode/stepping/start.hpp>
@@ -33,6 +35,8 @@ constexpr double kFar = 3.0, kNear = 0.02;
 /// Kind of interactions that are loads, whose potential is no strain energy.
 constexpr const char* kForceKind = "force";
 constexpr const char* kCableKind = "cable";
+/// Number of joints and drives that a message names.
+constexpr std::size_t kMostNames = 12;
 
 void stop_moving(const System& system, State& state) {
   for (int b = 0; b < system.body_count(); ++b) {
@@ -264,22 +268,48 @@ struct LoadStepper::Impl {
           if (std::optional<LimitPoint> end =
                   extrapolate_limit(*system, options, {before, state, factor_before, from}))
             report.limit_points.push_back(std::move(*end));
-        explain(step, soft);
+        explain(step, soft, state, factor);
         return false;
       }
     }
   }
 
+  /// "load factor 0.5", or a time.
+  [[nodiscard]] std::string place_text(double at) const {
+    return !follows()  ? format("load factor {:.6g}", at)
+           : at >= 0.0 ? format("t = {:.6g} s", at)
+                       : format("{:.6g} of the loads at the start of the history", 1.0 + at);
+  }
+
+  /// Message about rows that no positions satisfy beyond the last equilibrium; empty: they can.
+  /// @param tried  End of the shortest load step that failed.
+  [[nodiscard]] std::string gap_message(const State& state, double tried) {
+    const RowGap gap = newton.least_gap(state, tried);
+    if (gap.names.empty()) return {};
+    // As the user sees it: at the end of the load step that was asked for.
+    const double whole =
+        std::max(tried, std::min(state.t + longest(), state.t < 0.0 ? 0.0 : end()));
+    const RowGap there = newton.least_gap(state, whole);
+    const bool grows = !there.names.empty();
+    return format(
+        " these cannot all hold: {}; at {} {} remains at {}. Remove one of them, or change its "
+        "motion.",
+        name_list(gap.names, kMostNames), place_text(grows ? whole : tried),
+        (grows ? there : gap).open.gap_text(),
+        interaction_name(*system, (grows ? there : gap).open.interaction));
+  }
+
   /// Adds an explanation. @param soft  Motion with the smallest stiffness at the last equilibrium.
-  void explain(const StaticStep& step, const std::string& soft) {
+  void explain(const StaticStep& step, const std::string& soft, const State& state, double tried) {
     std::string& s = report.message;
     const double at = report.load_factor;
-    s = format("No equilibrium was found {}: {}",
-               !follows() ? format("beyond load factor {:.6g}", at)
-               : at >= 0.0
-                   ? format("after t = {:.6g} s", at)
-                   : format("beyond {:.6g} of the loads at the start of the history", 1.0 + at),
-               step.reason);
+    s = format("No equilibrium was found {} {}:", follows() && at >= 0.0 ? "after" : "beyond",
+               place_text(at));
+    if (const std::string gap = gap_message(state, tried); !gap.empty()) {
+      s += gap;
+      return;
+    }
+    s += " " + step.reason;
     if (!step.worst.empty()) s += format("; worst at {}", step.worst);
     if (step.force > 0.0)
       s += format(" (unbalanced {:.2g} N of {:.2g} N)", step.residual, step.force);
