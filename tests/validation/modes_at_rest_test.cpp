@@ -19,6 +19,7 @@
 namespace polhode::modes_at_rest_tests {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 ModesReport modes_of(const std::string& text, const io::Overrides& overrides = {}) {
@@ -103,8 +104,7 @@ analysis: {type: modes}
   }
 }
 
-/// A thruster on a free body: its force follows the two rotations that tilt it, which are then
-/// motions without a shape of their own.
+/// A thruster on a free body has no potential; a force fixed in the world has one.
 TEST(ModesAtRest, ALoadThatFollowsItsBodyIsNamed) {
   const auto thrust = [](const char* fixed) {
     return modes_of(format(R"(
@@ -118,6 +118,56 @@ analysis: {{type: modes, about: start}}
   EXPECT_THAT(thrust("true").warnings.at(0), HasSubstr("force 'main' acts here with 40 N"));
   for (const std::string& warning : thrust("false").warnings)
     EXPECT_THAT(warning, Not(HasSubstr("main")));
+}
+
+/// A free body with any forces and moments that follow it moves the same after any rotation: six
+/// free motions and no flutter. @tests{modes-turned-loads}
+TEST(ModesAtRest, ThrustersTurnWithAFreeBody) {
+  for (const char* thrust :
+       {"at: [0, 0, -1], force: [0, 0, 40]", "at: [0.3, 0.1, -1], force: [1, 2, 10]"}) {
+    const ModesReport r = modes_of(format(R"(
+format: 1
+bodies: {{craft: {{mass: 2, inertia: [1, 2, 3]}}}}
+loads: {{main: {{type: force, body: craft, {}, body_fixed: true}}}}
+analysis: {{type: modes, about: start}}
+)",
+                                          thrust));
+    ASSERT_EQ(r.modes.size(), 6u) << thrust;
+    std::vector<std::string> motions;
+    for (const Mode& mode : r.modes) {
+      EXPECT_EQ(mode.kind, ModeKind::free) << thrust;
+      EXPECT_LT(mode.residual, 1e-6) << thrust;
+      motions.push_back(mode.motion);
+    }
+    EXPECT_THAT(motions, Contains("body 'craft' moves along y"));
+    EXPECT_THAT(motions, Contains("body 'craft' rotates about x; force 'main' turns with it"));
+  }
+}
+
+/// A craft of two parts on a hinge with a spring: six free motions, and the vibration that it has
+/// without thrusters, as these act through the axis of the hinge's vibration.
+TEST(ModesAtRest, ThrustersLeaveAVibrationItsFrequency) {
+  const auto craft = [](const char* loads) {
+    return modes_of(std::string(R"(
+format: 1
+bodies:
+  hull: {mass: 2, inertia: [1, 2, 3]}
+  wing: {mass: 1, inertia: [0.1, 0.2, 0.3], position: [1, 0, 0]}
+joints: {hinge: {type: revolute, bodies: [hull, wing], at: [0.5, 0, 0], axis: z}}
+loads:
+  spring: {type: torsional_spring, joint: hinge, stiffness: 100}
+)") + loads + "analysis: {type: modes, about: start}\n");
+  };
+  const ModesReport without = craft("");
+  const ModesReport with = craft(R"(
+  main: {type: force, body: hull, at: [0, 0, -1], force: [0, 0, 10], body_fixed: true}
+  left: {type: force, body: wing, at: [1, 0, 0.2], force: [0, 0, 3], body_fixed: true}
+)");
+  ASSERT_EQ(with.modes.size(), 7u);
+  ASSERT_EQ(without.modes.size(), 7u);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(with.modes[i].kind, ModeKind::free) << i;
+  EXPECT_EQ(with.modes[6].kind, ModeKind::oscillation);
+  EXPECT_NEAR(with.modes[6].frequency, without.modes[6].frequency, 1e-9);
 }
 
 constexpr const char* kServo = R"(

@@ -70,6 +70,7 @@ CVec times(const Mat& A, const CVec& x) {
 /// Motions with neither stiffness nor damping, orthonormal in the metric of M.
 Mat free_of(ModalMatrices& m, double sigma) {
   Mat V(m.unknowns(), 0);
+  if (m.turned().cols() > 0) V = m.turned();
   if (!m.factor_quadratic(kNearZero * sigma)) return V;
   const auto clean = [&](Vec& x) {
     for (Eigen::Index i = 0; i < V.cols(); ++i) x -= m.mass_times(V.col(i)).dot(x) * V.col(i);

@@ -15,7 +15,7 @@ namespace {
 /// potential. Rounding gives 1e-15; a force that follows its body is of the order of one.
 constexpr double kHasPotential = 1e-9;
 
-using Mat12 = Eigen::Matrix<double, 12, 12>;
+using Mat12 = FollowerLoad::Stiffness;
 
 /// Largest entry of A − Aᵀ as a part of the largest of A.
 double unsymmetric_part(const Mat12& A) {
@@ -23,27 +23,48 @@ double unsymmetric_part(const Mat12& A) {
   return size > 0.0 ? (A - A.transpose()).cwiseAbs().maxCoeff() / size : 0.0;
 }
 
+StepContext context_of(double load_factor) {
+  StepContext context;
+  context.load_factor = load_factor;
+  context.t_n = load_factor;  // statics evaluates functions of time there
+  context.conserving = false;
+  return context;
+}
+
+struct PairStiffness {
+  Mat12 K, change;
+  double force = 0.0;
+};
+PairStiffness evaluate_pair(const System& system, const State& state, const StepContext& context,
+                            const InteractionRef& ref) {
+  const BodyStep a = system.instant(state, ref.a), b = system.instant(state, ref.b);
+  const PairStep step{a, b, context, state.lambda.data() + ref.first_row,
+                      state.history.data() + ref.first_history};
+  PairTerms terms;
+  terms.set_zero();
+  const int item = ref.item;
+  system.group(ref.group).evaluate({&item, 1}, {&step, 1}, {&terms, 1});
+  PairStiffness pair;
+  pair.change << terms.D_aa, terms.D_ab, terms.D_ba, terms.D_bb;
+  const Vec3 M_a = terms.wrench_a.tail<3>(), M_b = terms.wrench_b.tail<3>();
+  pair.K = -pair.change;
+  pair.K.block<3, 3>(3, 3) -= 0.5 * hat(M_a);
+  pair.K.block<3, 3>(9, 9) -= 0.5 * hat(M_b);
+  const double length = system.length_scale();
+  pair.force = std::max({terms.wrench_a.head<3>().norm(), terms.wrench_b.head<3>().norm(),
+                         M_a.norm() / length, M_b.norm() / length});
+  return pair;
+}
+
 void find_of_bodies(const System& system, const State& state, const StepContext& context,
                     std::vector<FollowerLoad>& found) {
-  for (const InteractionRef& ref : system.interactions()) {
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
     if (ref.rows > 0) continue;
-    const InteractionGroup& group = system.group(ref.group);
-    const BodyStep a = system.instant(state, ref.a), b = system.instant(state, ref.b);
-    const PairStep step{a, b, context, nullptr, state.history.data() + ref.first_history};
-    PairTerms terms;
-    terms.set_zero();
-    const int item = ref.item;
-    group.evaluate({&item, 1}, {&step, 1}, {&terms, 1});
-    Mat12 K;
-    K << terms.D_aa, terms.D_ab, terms.D_ba, terms.D_bb;
-    const Vec3 M_a = terms.wrench_a.tail<3>(), M_b = terms.wrench_b.tail<3>();
-    K.block<3, 3>(3, 3) += 0.5 * hat(M_a);
-    K.block<3, 3>(9, 9) += 0.5 * hat(M_b);
-    if (!K.allFinite() || unsymmetric_part(K) <= kHasPotential) continue;
-    const double length = system.length_scale();
-    found.push_back({format("{} '{}'", group.kind(), system.name(ref)),
-                     std::max({terms.wrench_a.head<3>().norm(), terms.wrench_b.head<3>().norm(),
-                               M_a.norm() / length, M_b.norm() / length})});
+    const PairStiffness pair = evaluate_pair(system, state, context, ref);
+    if (!pair.K.allFinite() || unsymmetric_part(pair.K) <= kHasPotential) continue;
+    found.push_back({format("{} '{}'", system.group(ref.group).kind(), system.name(ref)),
+                     pair.force, i, pair.K, pair.change});
   }
 }
 
@@ -84,14 +105,18 @@ void find_of_solids(const System& system, const State& state, const StepContext&
 
 std::vector<FollowerLoad> follower_loads(const System& system, const State& state,
                                          double load_factor) {
-  StepContext context;
-  context.load_factor = load_factor;
-  context.t_n = load_factor;  // statics evaluates functions of time there
-  context.conserving = false;
+  const StepContext context = context_of(load_factor);
   std::vector<FollowerLoad> found;
   find_of_bodies(system, state, context, found);
   find_of_solids(system, state, context, found);
   return found;
+}
+
+FollowerLoad::Stiffness pair_stiffness(const System& system, const State& state, double load_factor,
+                                       int interaction) {
+  return evaluate_pair(system, state, context_of(load_factor),
+                       system.interactions()[static_cast<std::size_t>(interaction)])
+      .K;
 }
 
 }  // namespace polhode

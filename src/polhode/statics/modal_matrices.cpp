@@ -278,6 +278,7 @@ void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>&
 }
 
 bool ModalMatrices::factor(double sigma) {
+  P_K_turned_.resize(0, 0);
   shifted_.combine(K(), -sigma * s(), mass_);
   // Integrals act as the springs that they are at this frequency, otherwise they would hold.
   for (const SaddleMatrix& integrals : of_integrals_)
@@ -288,7 +289,14 @@ bool ModalMatrices::factor(double sigma) {
 bool ModalMatrices::factor_quadratic(double sigma) {
   shifted_.combine(K(), sigma / rate_, damping_);
   shifted_.combine(shifted_, sigma * sigma * s(), mass_);
-  return solver_.factor(shifted_, false);
+  P_K_turned_.resize(0, 0);
+  if (!solver_.factor(shifted_, false)) return false;
+  if (turned_.cols() == 0) return true;
+  Mat P_K(unknowns(), turned_.cols());
+  for (Eigen::Index i = 0; i < turned_.cols(); ++i) P_K.col(i) = inverse(K_turned_.col(i));
+  left_.compute(Mat::Identity(turned_.cols(), turned_.cols()) - M_turned_.transpose() * P_K);
+  P_K_turned_ = P_K;
+  return true;
 }
 
 bool ModalMatrices::is_spring(int row) const {
@@ -316,7 +324,12 @@ Vec ModalMatrices::narrowed(const Vec& y, Eigen::Index size) const {
 Vec ModalMatrices::inverse(const Vec& f) const {
   Vec x = s() * widened(f);
   solver_.solve(x);
-  return narrowed(x, f.size());
+  Vec y = narrowed(x, f.size());
+  if (P_K_turned_.cols() > 0) {  // Woodbury's formula
+    const Eigen::Index n = f.size();
+    y += P_K_turned_.topRows(n) * left_.solve(M_turned_.topRows(n).transpose() * y);
+  }
+  return y;
 }
 
 Vec ModalMatrices::times(const SaddleMatrix& A, double factor, const Vec& x) const {
@@ -336,7 +349,10 @@ Vec ModalMatrices::damping_times(const Vec& x) const {
   return times(damping_, 1.0 / (s() * rate_), x);
 }
 Vec ModalMatrices::stiffness_times(const Vec& x) const {
-  return times(newton_.tangent(), 1.0 / s(), x);
+  Vec y = times(newton_.tangent(), 1.0 / s(), x);
+  if (turned_.cols() > 0)
+    y -= K_turned_.topRows(x.size()) * (M_turned_.topRows(x.size()).transpose() * x);
+  return y;
 }
 
 double ModalMatrices::energy_scale(const Vec& x) const {
@@ -365,6 +381,7 @@ ModalMatrices::Dense ModalMatrices::dense() {
       Gt(j, k.row()[e] - n()) -= k.values()[e];
     }
   }
+  if (turned_.cols() > 0) d.K -= K_turned_ * M_turned_.transpose();
   d.Gt.resize(unknowns(), 0);
   for (int r = 0; r < rows(); ++r) {
     // springs are in K, integrals are unknowns

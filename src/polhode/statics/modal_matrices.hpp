@@ -4,6 +4,9 @@
 #include <complex>
 #include <vector>
 
+#include <Eigen/LU>
+
+#include <polhode/statics/follower_loads.hpp>
 #include <polhode/statics/modes.hpp>
 #include <polhode/statics/static_newton.hpp>
 
@@ -50,6 +53,12 @@ class ModalMatrices {
   /// Asymmetry of the stiffness, before its symmetric part is taken.
   [[nodiscard]] double asymmetry() const { return asymmetry_; }
 
+  /// Rigid motions of parts that only these loads, which turn with their bodies, give a stiffness:
+  /// these motions become free ones. @eq{modes-turned-loads}
+  void let_turn(const State& state, const std::vector<FollowerLoad>& loads, double load_factor);
+  /// Those motions, orthonormal in the metric of M.
+  [[nodiscard]] const Mat& turned() const { return turned_; }
+
   /// Factors the symmetric part of s (K − σ M) with its constraints. @returns false if it is
   /// singular.
   [[nodiscard]] bool factor(double sigma);
@@ -95,7 +104,10 @@ class ModalMatrices {
   SaddleMatrix mass_, damping_, shifted_;  ///< damping_ is scaled by s() and rate_.
   double rate_ = 1.0, asymmetry_ = 0.0;
   bool damped_ = false;
-  std::vector<int> integrals_;              ///< Rows, ascending.
+  Mat turned_, K_turned_, M_turned_;  ///< V, K V and M V; no columns: none.
+  Mat P_K_turned_;                    ///< (K + σC + σ²M)⁻¹ K V after factor_quadratic().
+  Eigen::PartialPivLU<Mat> left_;     ///< 1 − (M V)ᵀ of that.
+  std::vector<int> integrals_;        ///< Rows, ascending.
   std::vector<SaddleMatrix> of_integrals_;  ///< Their compliance at a rate of 1/s; empty: none.
   SaddleSolver solver_;
 };

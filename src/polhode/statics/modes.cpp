@@ -183,6 +183,25 @@ void name_free(const System& system, const State& state, ModalMatrices& m,
   modes = std::move(kept);
 }
 
+/// Loads that change with a free motion: "; force 'main' turns with it".
+std::string loads_that_turn(const System& system, const std::vector<FollowerLoad>& loads,
+                            const Vec& motion) {
+  std::vector<std::string> names;
+  for (const FollowerLoad& load : loads) {
+    if (load.interaction < 0) continue;
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(load.interaction)];
+    Eigen::Matrix<double, 12, 1> x = Eigen::Matrix<double, 12, 1>::Zero();
+    if (ref.a != kGround) x.head<6>() = motion.segment<6>(6 * ref.a);
+    if (ref.b != kGround) x.tail<6>() = motion.segment<6>(6 * ref.b);
+    const double terms = (load.change.cwiseAbs() * x.cwiseAbs()).maxCoeff();
+    if ((load.change * x).cwiseAbs().maxCoeff() > kTurned * terms) names.push_back(load.name);
+  }
+  if (names.empty()) return {};
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "; " : ", ") + name;
+  return text + (names.size() == 1 ? " turns with it" : " turn with it");
+}
+
 /// Checks that a model about a rotating body is steady: after a small rotation stiffness and mass
 /// must be unchanged. @eq{modes-gyroscopic}
 void check_steady(const System& system, const State& state, const ModeOptions& options,
@@ -296,13 +315,16 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
       balance_of_forces.force > 0.0 ? balance_of_forces.residual / balance_of_forces.force : 0.0;
   report.asymmetry = m.asymmetry();
   report.symmetric = !m.damped() && report.asymmetry <= kSymmetricPencil;
+  std::vector<FollowerLoad> followers;
   if (report.asymmetry > kSymmetricPencil)
-    for (const FollowerLoad& load : follower_loads(system, equilibrium, options.load_factor))
-      report.warnings.push_back(
-          format("{} acts here with {:.4g} N and has no potential, as it follows its body or is a "
-                 "moment: motions may lose their freedom and flutter for this reason alone. Switch "
-                 "it off for the modes without it",
-                 load.name, load.force));
+    followers = follower_loads(system, equilibrium, options.load_factor);
+  m.let_turn(equilibrium, followers, options.load_factor);
+  for (const FollowerLoad& load : followers)
+    report.warnings.push_back(
+        format("{} acts here with {:.4g} N and has no potential, as it follows its body or is a "
+               "moment: vibrations may flutter for this reason alone. Switch it off for the modes "
+               "without it",
+               load.name, load.force));
   if (!options.spin.empty()) check_steady(system, equilibrium, options, m, report);
   std::vector<Mode> modes =
       report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);
@@ -311,6 +333,8 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
       throw SolveError("modes: a frequency is not a finite number",
                        "Look for a mass, inertia or stiffness that is far too small or too large");
   name_free(system, equilibrium, m, modes);
+  for (Mode& mode : modes)
+    if (mode.rigid) mode.motion += loads_that_turn(system, followers, mode.shape);
   const bool asked = options.count != ModeOptions{}.count;  // otherwise the default count
   if (modes.empty() || (asked && static_cast<int>(modes.size()) < options.count))
     report.warnings.push_back(

@@ -224,7 +224,7 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
 }
 
 std::vector<Vec> rigid_free_motions(const System& system, const State& state,
-                                    const SaddleMatrix& matrix) {
+                                    const SaddleMatrix& matrix, const SaddleMatrix* without) {
   std::vector<Vec> free;
   const double length = system.length_scale();
   for (const Part& part : parts_of(system)) {
@@ -238,6 +238,10 @@ std::vector<Vec> rigid_free_motions(const System& system, const State& state,
       matrix.times(x, force);
       matrix.magnitudes(x, terms);
       forces.col(k) = force;
+      if (without) {
+        without->times(x, force);
+        forces.col(k) -= force;
+      }
       largest = std::max(largest, terms.lpNorm<Eigen::Infinity>());
     }
     if (!(largest > 0.0)) continue;

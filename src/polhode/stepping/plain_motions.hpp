@@ -27,7 +27,9 @@ struct PlainMotion {
 /// Translations and rotations of connected components without stiffness and without constraint.
 /// They are found without the rounding of a factorisation, so that they are distinguished from
 /// motions with a small stiffness. Independent, each with largest component one. @eq{statics-rigid}
+/// @param without  Part of the stiffness that does not count; null: none.
 [[nodiscard]] std::vector<Vec> rigid_free_motions(const System& system, const State& state,
-                                                  const SaddleMatrix& matrix);
+                                                  const SaddleMatrix& matrix,
+                                                  const SaddleMatrix* without = nullptr);
 
 }  // namespace polhode
