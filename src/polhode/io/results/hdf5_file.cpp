@@ -277,8 +277,7 @@ struct Hdf5File::Impl {
 
   void write_held() {
     if (held_frames == 0) return;
-    // Nobody reads a file without a name: its time comes first, so that its index does not lie
-    // behind the frames, where a cut would take it.
+    // Nobody reads a file without a name: a time before all else keeps its index before the frames.
     const bool first = written == 0 && unnamed;
     if (first) write_channel(0, 0);
     std::size_t offset = channels[0].size();
