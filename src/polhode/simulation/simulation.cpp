@@ -179,18 +179,7 @@ RunSummary Simulation::summary() const {
   if (s.statics) {
     r.statics = s.statics->report();
     r.strain_energy = s.statics->strain_energy(s.state);
-    if (r.statics->unstable > 0)
-      for (const SolidMap& solid : s.map.solids)
-        for (const solids::SolidElements* elements : solid.elements) {
-          const solids::LinearModuli moduli = elements->material().linear();
-          if (0.5 * moduli.lame / (moduli.lame + moduli.shear) <= elements->element().most_poisson)
-            continue;
-          r.warnings.push_back(
-              format("{}: the instability may be that of the mesh, as the pressure in nearly "
-                     "incompressible {} oscillates. See whether it remains with smaller cells, "
-                     "with tet10, or with hex8_q1p0 and an uncoupled material",
-                     elements->name(), elements->element().name));
-        }
+    for (const std::string& text : s.mesh_instabilities(*r.statics)) r.warnings.push_back(text);
   }
   if (has_contacts()) {
     const ContactLosses lost = contact_losses();

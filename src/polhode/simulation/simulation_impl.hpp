@@ -353,6 +353,8 @@ struct Simulation::Impl {
 
   /// Conspicuous findings of steps and of watch_stretches().
   [[nodiscard]] std::vector<std::string> warnings() const;
+  /// Warnings about unstable directions at the end that are those of nearly incompressible meshes.
+  [[nodiscard]] std::vector<std::string> mesh_instabilities(const StaticReport& report) const;
   /// Body or solid with the largest error of a step.
   [[nodiscard]] std::string whose_error() const;
   /// Adds warnings of steps that do not resolve the motion. The figures are those of the run so

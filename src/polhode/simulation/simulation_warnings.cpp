@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <polhode/simulation/simulation_impl.hpp>
+#include <polhode/solids/even_pressure.hpp>
 
 namespace polhode {
 
@@ -38,6 +39,41 @@ std::vector<std::string> Simulation::Impl::warnings() const {
           "elements, or a finer mesh.",
           model.solids[i].name, 100.0 * error, statics ? "load factor" : "t", watch.t_largest));
   }
+  return list;
+}
+
+/// Nearly incompressible elements that lock carry the volume that cannot change by a pressure that
+/// oscillates within them: its stiffness is that of a pressure times ∂²J/∂x∂x, which has no sign.
+/// Directions that are no longer unstable with the mean pressure of each element are the mesh's.
+std::vector<std::string> Simulation::Impl::mesh_instabilities(const StaticReport& report) const {
+  std::vector<std::string> list;
+  if (report.unstable <= 0) return list;
+  const Nodes& nodes = system.nodes();
+  std::vector<Vec3> X;
+  for (int i = 0; i < nodes.count(); ++i) X.push_back(nodes[i].position);
+  std::vector<double> blocks(9 * nodes.column().size(), 0.0);
+  std::string names, kinds;
+  for (const SolidMap& solid : map.solids)
+    for (std::size_t k = 0; k < solid.elements.size(); ++k) {
+      const solids::SolidElements& elements = *solid.elements[k];
+      const solids::LinearModuli moduli = elements.material().linear();
+      const double poisson = 0.5 * moduli.lame / (moduli.lame + moduli.shear);
+      // Elements with enhanced strains have another pressure than that of their nodes.
+      if (poisson <= elements.element().most_poisson || elements.element().sizes().modes() > 0)
+        continue;
+      solids::even_pressure(elements, X, state.node_x.data(), nodes.slots(solid.groups[k]), blocks);
+      names += (names.empty() ? "" : ", ") + elements.name();
+      kinds = elements.element().name;
+    }
+  if (names.empty()) return list;
+  const int even = statics->newton().unstable_with(state, state.t, blocks);
+  if (even < 0 || even >= report.unstable) return list;
+  list.push_back(format(
+      "{}: {} of the {} unstable directions are those of the mesh: the pressure oscillates within "
+      "nearly incompressible {}, and with its mean in each element there {} {}. Use smaller cells, "
+      "tet10, or hex8_q1p0 with an uncoupled material.",
+      names, report.unstable - even, report.unstable, kinds, even == 1 ? "is" : "are",
+      even == 0 ? "none" : std::to_string(even)));
   return list;
 }
 

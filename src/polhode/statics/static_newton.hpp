@@ -72,6 +72,10 @@ class StaticNewton {
   [[nodiscard]] const std::vector<double>& node_residual() const { return held_; }
   /// Measures the last assembly: largest unbalanced force, and the largest force [N].
   void measure(StaticStep& step) const;
+  /// Number of unstable directions at an equilibrium with stiffnesses added to the tangent of the
+  /// nodes, in blocks of their graph [N/m]; −1: not known.
+  [[nodiscard]] int unstable_with(const State& state, double load_factor,
+                                  const std::vector<double>& more);
   /// Softest motion at the last equilibrium found.
   [[nodiscard]] SoftestMotion softest();
 

@@ -176,6 +176,17 @@ void StaticNewton::count_unstable(StaticStep& step) {
   if (symmetric) step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
 }
 
+int StaticNewton::unstable_with(const State& state, double load_factor,
+                                const std::vector<double>& more) {
+  assemble_at(state, load_factor);
+  std::vector<double> blocks = nodes_.tangent();
+  for (std::size_t k = 0; k < more.size(); ++k) blocks[k] += more[k];
+  matrix_.set(newton_.values(), blocks, nodes_.residual().data(), scale());
+  matrix_.hold_point_masses(system_->length_scale() * system_->length_scale());
+  if (!make_symmetric() || !solver_.factor(matrix_, true)) return -1;
+  return std::max(0, solver_.negative_pivots() - system_->rows());
+}
+
 /// Softest motion, by inverse iterations with the factors of count_unstable().
 SoftestMotion StaticNewton::softest() {
   SoftestMotion soft;
