@@ -15,16 +15,18 @@ namespace polhode::solids {
 namespace {
 
 constexpr double kSmallestTried = 0.3;
-constexpr int kHalvings = 12;  ///< Stretch to 2e-4.
+/// Stretches tried from one downwards, since a brick may resist again below a range in which it
+/// does not; and halvings of that step, to 2e-4.
+constexpr int kTried = 35, kHalvings = 7;
 constexpr int kCorners = 8;
+constexpr int kLateralIterations = 20;  ///< Of Newton's method: quadratic, from strains below 0.5.
 
 /// One brick, evaluated at homogeneous stretches.
 class Brick {
  public:
   Brick(const std::string& element, const std::shared_ptr<const Material>& material,
         const Vec3& size)
-      : poisson_(0.5 * material->linear().lame /
-                 (material->linear().lame + material->linear().shear)) {
+      : material_(material) {
     for (const Vec3& corner : cell_shape("hex8").nodes) {
       corners_.push_back(corner);
       X_.push_back(0.5 * corner.cwiseProduct(size));
@@ -44,7 +46,7 @@ class Brick {
   /// Whether it resists hourglass motions, those orthogonal to all homogeneous deformations: u_c =
   /// ξη, ηζ, ζξ, ξηζ in each direction c.
   [[nodiscard]] bool resists(int axis, double stretch) const {
-    Vec3 F = Vec3::Constant(std::pow(stretch, -poisson_));
+    Vec3 F = Vec3::Constant(lateral_stretch(axis, stretch));
     F[axis] = stretch;
     std::vector<double> x, none(3 * kCorners, 0.0), force(3 * kCorners, 0.0);
     for (const Vec3& X : X_)
@@ -82,7 +84,20 @@ class Brick {
   }
 
  private:
-  double poisson_;
+  /// Stretch in the other two directions at which these are free of stress.
+  [[nodiscard]] double lateral_stretch(int axis, double stretch) const {
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    Vec6 E = Vec6::Zero();
+    E[axis] = 0.5 * (stretch * stretch - 1.0);
+    for (int k = 0; k < kLateralIterations; ++k) {
+      const MaterialPoint point = discrete_stress(*material_, E, E);
+      // With both strains the same at the end of a step, the tangent is half of dS/dE.
+      E[i] = E[j] = E[i] - 0.5 * point.S[i] / (point.D(i, i) + point.D(i, j));
+    }
+    return std::sqrt(1.0 + 2.0 * E[i]);
+  }
+
+  std::shared_ptr<const Material> material_;
   std::vector<Vec3> X_, corners_;
   std::unique_ptr<SolidElements> group_;
   std::vector<int> slots_;
@@ -94,8 +109,11 @@ class Brick {
 double stable_stretch(const std::string& element, const std::shared_ptr<const Material>& material,
                       const Vec3& size, int axis) {
   const Brick brick(element, material, size);
-  double lost = kSmallestTried, kept = 1.0;
-  if (brick.resists(axis, lost)) return 0.0;
+  constexpr double step = (1.0 - kSmallestTried) / kTried;
+  int tried = 1;
+  while (tried <= kTried && brick.resists(axis, 1.0 - tried * step)) ++tried;
+  if (tried > kTried) return 0.0;
+  double lost = 1.0 - tried * step, kept = lost + step;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (lost + kept);
     (brick.resists(axis, middle) ? kept : lost) = middle;
