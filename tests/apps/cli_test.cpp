@@ -252,6 +252,21 @@ analysis: {duration: 0.1 s, step: 10 ms}
   EXPECT_THAT(result.err, AllOf(HasSubstr("'low'"), HasSubstr("'high'")));
 }
 
+TEST_F(CommandLine, NamesLawsThatJump) {
+  write("tool.yaml", R"(format: 1
+bodies: {tool: {mass: 2, inertia: [1, 1, 1], velocity: [1, 0, 0]}}
+joints: {slide: {type: prismatic, bodies: [ground, tool], at: [0, 0, 0], axis: x}}
+loads: {cut: {type: translational_spring, joint: slide, damper_force: "v > 2 ? 1470 : v > 0 ? 1500 : 0"}}
+analysis: {duration: 0.1 s, step: 10 ms}
+)");
+  const auto result = run({"check", "tool.yaml", "--tangents"});
+  EXPECT_EQ(result.code, 0) << result.out;
+  EXPECT_THAT(result.err, HasSubstr("damper_force of load 'cut' jumps by 1500 N at 0 m/s: it holds "
+                                    "there like dry friction, to a width of 1e-09 m/s."));
+  EXPECT_THAT(result.err, HasSubstr("damper_force of load 'cut' falls by 30 N at 2 m/s: in each "
+                                    "step the side is that of its start."));
+}
+
 TEST_F(CommandLine, ReportsTheContentsOfAModelAndTheKindsThatExist) {
   const auto info = run({"info", "model.yaml"});
   ASSERT_EQ(info.code, 0) << info.err;

@@ -5,6 +5,8 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/loads/force_law.hpp>
+#include <polhode/loads/registry.hpp>
 #include <polhode/newton/rank_report.hpp>
 #include <polhode/newton/tangent_check.hpp>
 #include <polhode/stepping/contradiction.hpp>
@@ -43,6 +45,28 @@ std::vector<std::string> contradictions(const Simulation& simulation) {
                        analysis.step.value_or(kStepOfDuration * analysis.duration));
 }
 
+/// Jumps of the laws of a load over a rate, where it acts like dry friction.
+void add_law_jumps(const LoadSpec& load, std::vector<std::string>& list) {
+  const LoadKind& kind = load_kind(load.type);
+  for (const LawParameter& law : kind.laws) {
+    const auto given = load.laws.find(law.name);
+    if (law.variable != "v" || given == load.laws.end()) continue;
+    for (const LawJump& jump : jumps_of(*given->second)) {
+      if (jump.size > 0.0)
+        list.push_back(
+            format("{} of load '{}' jumps by {:.6g} {} at {:.6g} {}: it holds there like dry "
+                   "friction, to a width of {:g} {}. Give a law that rises over a larger one if "
+                   "that is meant.",
+                   law.name, load.name, jump.size, law.unit, jump.at, law.of, kJumpWidth, law.of));
+      else
+        list.push_back(
+            format("{} of load '{}' falls by {:.6g} {} at {:.6g} {}: in each step the side is that "
+                   "of its start. Give a law that falls over a range of rates if that is meant.",
+                   law.name, load.name, -jump.size, law.unit, jump.at, law.of));
+    }
+  }
+}
+
 /// Conspicuous findings in a model that can be run.
 std::vector<std::string> warnings(const Simulation& simulation, const RankReport& rank) {
   std::vector<std::string> list;
@@ -74,6 +98,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
         format("rho_inf is {:g}: numerical damping takes energy from every contact, so restitution "
                "and rebound are too small. Set rho_inf: 1.",
                simulation.model().analysis.rho_inf));
+  for (const LoadSpec& load : simulation.model().loads) add_law_jumps(load, list);
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
   return list;

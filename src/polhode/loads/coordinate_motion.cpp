@@ -78,6 +78,12 @@ double coordinate_rate_at_n1(const JointCoordinate& coordinate, const BodyStep& 
   return std::visit([&](const auto& q) { return q.rate_at_n1(a, b); }, coordinate);
 }
 
+BodyStep body_at_start(const BodyStep& body) {
+  BodyStep start = BodyStep::at_instant(body.r_n, body.Lambda_n, body.v_n, body.W_n);
+  start.moves = body.moves;
+  return start;
+}
+
 RateStep rate_step(const CoordinateMotion& q, const BodyStep& a, const BodyStep& b) {
   const Vec6 v_a = velocity_alpha(a), v_b = velocity_alpha(b);
   RateStep s;

@@ -39,6 +39,9 @@ struct CoordinateMotion {
 [[nodiscard]] double coordinate_rate_at_n1(const JointCoordinate& coordinate, const BodyStep& a,
                                            const BodyStep& b);
 
+/// A body at the start of its step, as an instant.
+[[nodiscard]] BodyStep body_at_start(const BodyStep& body);
+
 /// Rate of a coordinate at t_{n+αf}, which is its change over Δt at ρ∞ = 1, with its tangents.
 struct RateStep {
   double value = 0.0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/loads/force_law.hpp>
 #include <polhode/math/gauss_rule.hpp>
 
@@ -18,6 +19,19 @@ constexpr double kShort = 1e-6;
 
 /// Displacement, as a part of x, below which the mean of V' replaces the quotient of V.
 constexpr double kShortWay = 1e-4;
+
+/// Largest rate at which jumps are looked for [m/s or rad/s], and their number above which steps
+/// are a curve.
+constexpr double kFastest = 0x1p20;
+constexpr std::size_t kMostJumps = 64;
+/// Distance from a jump, as a part of the rate, at which its limits are taken.
+constexpr double kBesideJump = 0x1p-40;
+/// Rounding of a multiplier that has its bound, as a part of the jump.
+constexpr double kBoundRounding = 0x1p-40;
+/// Rate whose displacement in a step measures the value of a row that has its bound.
+constexpr double kUnitRate = 1.0;
+
+double near_jump(double v) { return kBesideJump * std::max(std::abs(v), 1.0); }
 
 /// V'(x) of a potential.
 class SlopeFunction final : public TimeFunction {
@@ -155,12 +169,112 @@ double ForceLaw::energy(double x) const {
   return energy;
 }
 
-LawValue ResistanceLaw::at(double v) const {
-  LawValue value{c_ * v, c_};
+std::vector<LawJump> jumps_of(const TimeFunction& law) {
+  std::vector<LawJump> list;
+  for (TimeBreak b = law.next_break(-kFastest, kFastest); b.exists();
+       b = law.next_break(b.t, kFastest)) {
+    if (b.derivative != 0) continue;
+    if (list.size() == kMostJumps) return {};
+    const double near = near_jump(b.t), below = law(b.t - near), above = law(b.t + near);
+    LawJump jump{b.t, above - below, 0.5 * (above - below)};
+    // Bodies at rest are not moved by a resistance.
+    if (std::abs(b.t) <= near && below <= 0.0 && above >= 0.0) jump = {0.0, jump.size, -below};
+    list.push_back(jump);
+  }
+  return list;
+}
+
+ResistanceLaw::ResistanceLaw(const LoadDescription& load, const std::string& law)
+    : c_(load.value("damping", 0.0)), f_(load.law(law)) {
+  if (!f_ || load.at_rest) return;
+  jumps_ = jumps_of(*f_);
+  for (const LawJump& jump : jumps_) (jump.size > 0.0 ? rows_ : drops_).push_back(jump);
+  if (rows_.size() <= static_cast<std::size_t>(kMaxRows)) return;
+  // Those nearest to rest hold.
+  std::stable_sort(rows_.begin(), rows_.end(), [](const LawJump& x, const LawJump& y) {
+    return std::abs(x.at) < std::abs(y.at);
+  });
+  drops_.insert(drops_.end(), rows_.begin() + kMaxRows, rows_.end());
+  rows_.resize(kMaxRows);
+}
+
+LawValue ResistanceLaw::smooth(const StepRates& v) const {
+  LawValue value{c_ * v.at_alpha, c_};
   if (!f_) return value;
-  value.value += (*f_)(v);
-  value.slope += f_->rates(v, TimeSide::kAfter).rate;
+  double at = v.at_alpha;
+  for (const LawJump& jump : jumps_)
+    if (std::abs(at - jump.at) <= near_jump(jump.at)) at = jump.at - near_jump(jump.at);
+  value.value += (*f_)(at);
+  value.slope += f_->rates(at, TimeSide::kAfter).rate;
+  for (const LawJump& jump : jumps_)
+    if (at > jump.at) value.value -= jump.size;
+  for (const LawJump& jump : drops_)
+    if (v.at_n > jump.at) value.value += jump.size;
   return value;
+}
+
+double ResistanceLaw::held(int row, double v, const double* memory) const {
+  const LawJump& jump = rows_[static_cast<std::size_t>(row)];
+  if (v > jump.at + kJumpWidth) return jump.size;
+  return v < jump.at - kJumpWidth ? 0.0 : memory[kHeld + row];
+}
+
+double ResistanceLaw::of_rows(const StepRates& v, const double* lambda,
+                              const double* memory) const {
+  double force = 0.0;
+  for (int k = 0; k < rows(); ++k) force += v.dt == 0.0 ? held(k, v.at_n, memory) : -lambda[k];
+  return force;
+}
+
+/// The equation of a row at its multiplier and rate: an active set, of which neither bound is left
+/// for the other without the rate of the jump between them. @eq{law-jump}
+Vec6 ResistanceLaw::put_rows(const StepRates& v, const double* lambda, PairTerms& terms) const {
+  Vec6 by_rate = Vec6::Zero();
+  for (int k = 0; k < rows(); ++k) {
+    const LawJump& jump = rows_[static_cast<std::size_t>(k)];
+    if (v.dt == 0.0) {  // the force is given
+      terms.compliance[k] = 1.0;
+      continue;
+    }
+    const double force = -lambda[k], above = v.at_n1() - jump.at;
+    const double rounding = kBoundRounding * jump.size;
+    const bool whole = force >= jump.size - rounding && above >= 0.0;
+    const bool none = force <= rounding && above <= 0.0;
+    const double per_rate = v.alpha_f * v.dt;
+    if (whole || none) {
+      terms.compliance[k] = per_rate * kUnitRate / jump.size;
+      terms.g[k] = whole ? per_rate * kUnitRate : 0.0;
+      continue;
+    }
+    terms.compliance[k] = per_rate * kJumpWidth / jump.size;
+    terms.g[k] = per_rate * above + terms.compliance[k] * jump.rest;
+    by_rate[k] = v.dt;
+  }
+  return by_rate;
+}
+
+StepRates ResistanceLaw::rates(const PairStep& step, double now, double at_alpha,
+                               const double* memory) const {
+  if (is_load_step(step.context)) return {.at_n = 0.0, .at_alpha = at_alpha};
+  const double offset = rows_.empty() ? 0.0 : memory[kOffset];
+  if (step.context.dt == 0.0) return {.at_n = at_alpha + offset, .at_alpha = at_alpha};
+  return {now + offset, at_alpha, step.a.alpha_f, step.context.dt};
+}
+
+void ResistanceLaw::initialize(double now, double* memory) const {
+  if (rows_.empty()) return;
+  memory[kOffset] = 0.0;
+  for (int k = 0; k < rows(); ++k) {
+    memory[kHeld + k] = rows_[static_cast<std::size_t>(k)].rest;
+    memory[kHeld + k] = held(k, now, memory);
+  }
+}
+
+void ResistanceLaw::commit(const StepRates& v, double now, const double* lambda,
+                           double* memory) const {
+  if (rows_.empty()) return;
+  memory[kOffset] = v.at_n1() - now;
+  for (int k = 0; k < rows(); ++k) memory[kHeld + k] = -lambda[k];
 }
 
 }  // namespace polhode

@@ -9,8 +9,8 @@ namespace polhode {
 /// A spring and damper along a free coordinate q of a joint with counted turns.
 ///
 /// The force on b along q is −f(q − q_0) − d(q̇) by the discrete gradient of q: at ρ∞ = 1 the
-/// spring conserves its energy exactly, and the damper dissipates d(q̇) q̇ Δt.
-/// @eq{torsion-gradient} @eq{law-mean}
+/// spring conserves its energy exactly, and the damper dissipates d(q̇) q̇ Δt. Rows are those of
+/// jumps of d. @eq{torsion-gradient} @eq{law-mean} @eq{law-jump}
 class JointSpring : public InteractionItem {
  public:
   /// @param load  Its angle or displacement; values stiffness, quadratic, damping; laws.
@@ -18,10 +18,17 @@ class JointSpring : public InteractionItem {
 
   [[nodiscard]] bool conservative() const { return damper_.is_zero(); }
   [[nodiscard]] bool dissipates() const { return !damper_.is_zero(); }
-  [[nodiscard]] int history_size() const { return 1; }  ///< The coordinate at t_n.
+  [[nodiscard]] int rows() const { return damper_.rows(); }
+  [[nodiscard]] bool works() const { return true; }
+  [[nodiscard]] bool compliant() const { return set_valued(); }
+  [[nodiscard]] bool set_valued() const { return damper_.rows() > 0; }
+  [[nodiscard]] int history_size() const { return kDamper + damper_.memory_size(); }
   [[nodiscard]] Coupling coupling() const {
-    return std::holds_alternative<FreeAngle>(coordinate_) ? Coupling::couple : Coupling::all;
+    const bool turns = std::holds_alternative<FreeAngle>(coordinate_);
+    return turns && !set_valued() ? Coupling::couple : Coupling::all;
   }
+  /// Nothing: at an instant the forces of its rows are given.
+  void acceleration_terms(const PairStep&, Vec6&) const {}
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] or moment [N m] on b, coordinate with counted turns, its rate,
@@ -29,10 +36,14 @@ class JointSpring : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
-  void commit_off(const PairStep& step, double* history) const { commit(step, history); }
-  void switch_on(const PairStep& step, double* history) const { commit(step, history); }
+  void commit_off(const PairStep& step, double* history) const;
+  void switch_on(const PairStep& step, double* history) const;
 
  private:
+  /// Layout of the history: coordinate at t_n, memory of the damper.
+  enum History : int { kCoordinate, kDamper };
+  [[nodiscard]] double rate_now(const PairStep& step) const;  ///< At t_{n+1}.
+  [[nodiscard]] StepRates rates(const PairStep& step, double at_alpha) const;
   [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;
 
   JointCoordinate coordinate_;

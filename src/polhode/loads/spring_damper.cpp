@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/loads/coordinate_motion.hpp>
 #include <polhode/loads/spring_damper.hpp>
 
 namespace polhode {
@@ -77,9 +78,11 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
   Mat3x12 D_F = Mat3x12::Zero();
   if (s.has_direction) {
     const LawValue spring = tension(step, s);
-    const LawValue damper = damper_.at(s.rate);
+    const StepRates v = rates(step, s);
+    const LawValue damper = damper_.smooth(v);
     const CoordinateValue given = pull(step, s, step.context.tangents);
-    const double N = spring.value + damper.value + given.value;
+    const double N =
+        spring.value + damper.value + damper_.of_rows(v, step.lambda, step.history) + given.value;
     const Vec3 n = s.u_alpha / s.l_alpha;
     Row12 D_l = Row12::Zero();
     if (!step.context.conserving)
@@ -93,15 +96,34 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
       Mat3x12 D_u_dot;
       D_u_dot << -af * a.rate * Mat3::Identity(), -point_velocity_by_turn(a, s.z_a),
           af * b.rate * Mat3::Identity(), point_velocity_by_turn(b, s.z_b);
-      D_N += (damper.slope + given.by_rate) / s.l_alpha *
-             (s.u_dot.transpose() * D_u + s.u_alpha.transpose() * D_u_dot - s.rate * D_l);
+      const Row12 D_rate =
+          (s.u_dot.transpose() * D_u + s.u_alpha.transpose() * D_u_dot - s.rate * D_l) / s.l_alpha;
+      D_N += (damper.slope + given.by_rate) * D_rate;
+      const Vec6 by_rate = damper_.put_rows(v, step.lambda, t);
+      for (int k = 0; k < rows(); ++k) {
+        t.B_b.col(k) << n, s.z_b.at_alpha.cross(n);
+        t.B_a.col(k) << -n, -s.z_a.at_alpha.cross(n);
+        if (!step.context.tangents) continue;
+        t.G_a.row(k) = by_rate[k] * D_rate.head<6>();
+        t.G_b.row(k) = by_rate[k] * D_rate.tail<6>();
+      }
     }
     F = -N * n;
     D_F = -N / s.l_alpha * D_u - n * (D_N - N / s.l_alpha * D_l);
-  } else if (l_0_ == 0.0) {
-    const double k = spring_.at(0.0).slope;
-    F = -k * s.u_alpha;
-    D_F = -k * D_u;
+  } else {
+    if (l_0_ == 0.0) {
+      const double k = spring_.at(0.0).slope;
+      F = -k * s.u_alpha;
+      D_F = -k * D_u;
+    }
+    for (int k = 0; k < rows(); ++k) {  // without a direction no force of the damper
+      t.compliance[k] = 1.0;
+      t.B_a.col(k).setZero();
+      t.B_b.col(k).setZero();
+      if (!step.context.tangents) continue;
+      t.G_a.row(k).setZero();
+      t.G_b.row(k).setZero();
+    }
   }
 
   t.wrench_b << F, s.z_b.at_alpha.cross(F);
@@ -120,8 +142,34 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
 Work SpringDamper::work(const PairStep& step) const {
   const Stretch s = stretch(step);
   return {.stored = spring_.energy(s.l_n1 - l_0_),
-          .dissipated = damper_.at(s.rate).value * s.rate * step.context.dt,
+          .dissipated = damper_.is_zero() || !s.has_direction
+                            ? 0.0
+                            : damper_.force(rates(step, s), step.lambda, step.history) * s.rate *
+                                  step.context.dt,
           .put_in = pull_ || of_motion_ ? -pull(step, s, false).value * (s.l_n1 - s.l_n) : 0.0};
+}
+
+StepRates SpringDamper::rates(const PairStep& step, const Stretch& s) const {
+  double now = 0.0;
+  if (damper_.jumps() && step.context.dt != 0.0) {
+    const BodyStep a = body_at_start(step.a), b = body_at_start(step.b);
+    now = stretch({a, b, step.context, step.lambda, step.history}).rate;
+  }
+  return damper_.rates(step, now, s.rate, step.history);
+}
+
+void SpringDamper::initialize(const PairStep& step, double* history) const {
+  damper_.initialize(rate_now(step), history);
+}
+
+void SpringDamper::commit(const PairStep& step, double* history) const {
+  if (rows() > 0) damper_.commit(rates(step, stretch(step)), rate_now(step), step.lambda, history);
+}
+
+double SpringDamper::rate_now(const PairStep& step) const {
+  const BodyStep a = BodyStep::at_instant(step.a.r_n1, step.a.Lambda_n1, step.a.v_n1, step.a.W_n1);
+  const BodyStep b = BodyStep::at_instant(step.b.r_n1, step.b.Lambda_n1, step.b.v_n1, step.b.W_n1);
+  return stretch({a, b, step.context, step.lambda, step.history}).rate;
 }
 
 CoordinateValue SpringDamper::pull(const PairStep& step, const Stretch& s, bool tangents) const {
@@ -141,7 +189,8 @@ std::vector<double> SpringDamper::report(const PairStep& step) const {
   const Stretch s = stretch(step);
   Vec3 force = Vec3::Zero();
   if (s.has_direction)
-    force = -(tension(step, s).value + damper_.at(s.rate).value + pull(step, s, false).value) /
+    force = -(tension(step, s).value + damper_.force(rates(step, s), step.lambda, step.history) +
+              pull(step, s, false).value) /
             s.l_alpha * s.u_alpha;
   else if (l_0_ == 0.0)
     force = -spring_.at(0.0).slope * s.u_alpha;

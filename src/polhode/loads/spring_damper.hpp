@@ -14,7 +14,7 @@ namespace polhode {
 ///   F = −N u_α / l_α,   N = k (l_α − l_0) + c l̇_α,   l̇_α = u_α·u̇_α / l_α.   @eq{spring-gradient}
 ///
 /// With k (l_α − l_0) replaced by the mean of a law over the step where it is not linear
-/// @eq{law-mean}.
+/// @eq{law-mean}, and c l̇_α by a resistance, whose jumps have rows @eq{law-jump}.
 ///
 /// Then l_{n+1} − l_n = u_α·Δu/l_α at ρ∞ = 1, so the spring conserves its energy exactly and the
 /// damper dissipates c l̇_α² Δt ≥ 0. While the points coincide only a spring of free length zero
@@ -30,6 +30,13 @@ class SpringDamper : public InteractionItem {
   [[nodiscard]] bool dissipates() const {
     return !damper_.is_zero() || (of_motion_ && of_motion_->reads_velocity);
   }
+  [[nodiscard]] int rows() const { return damper_.rows(); }
+  [[nodiscard]] bool works() const { return true; }
+  [[nodiscard]] bool compliant() const { return set_valued(); }
+  [[nodiscard]] bool set_valued() const { return damper_.rows() > 0; }
+  [[nodiscard]] int history_size() const { return damper_.memory_size(); }
+  /// Nothing: at an instant the forces of its rows are given.
+  void acceleration_terms(const PairStep&, Vec6&) const {}
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {pull_}; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
@@ -37,12 +44,17 @@ class SpringDamper : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   /// Distance of the points at t_{n+1} [m].
   [[nodiscard]] double length(const PairStep& step) const;
+  void initialize(const PairStep& step, double* history) const;
+  void commit(const PairStep& step, double* history) const;
+  void switch_on(const PairStep& step, double* history) const { initialize(step, history); }
 
  private:
   struct Stretch;
   [[nodiscard]] Stretch stretch(const PairStep& step) const;
   /// Given attractive force between the points [N], with its derivatives by length and rate.
   [[nodiscard]] CoordinateValue pull(const PairStep& step, const Stretch& s, bool tangents) const;
+  [[nodiscard]] double rate_now(const PairStep& step) const;  ///< At t_{n+1}.
+  [[nodiscard]] StepRates rates(const PairStep& step, const Stretch& s) const;
   [[nodiscard]] LawValue tension(const PairStep& step, const Stretch& s) const;
 
   Vec3 Z_a_, Z_b_;

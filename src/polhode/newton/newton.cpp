@@ -82,6 +82,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       report.worst = format("body '{}'", system.bodies()[worst].name);
   };
   const bool kept = engine.keeps_factor();
+  const bool may_grow = engine.may_grow() || system.set_valued();
   const double left = system.stiff() ? kLeftStiff : kLeft;
   const auto most_iterations = [&] {
     return (iterated_again && !kept ? kMoreWhenClose : 1) * options.max_iterations;
@@ -90,7 +91,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const double last = report.increments.empty() ? 0.0 : report.increments.back();
     const bool refactor = options.jacobian == JacobianPolicy::every_iteration ||
                           (options.jacobian == JacobianPolicy::automatic
-                               ? !close || slowly_contracting
+                               ? !close || slowly_contracting || system.set_valued()
                                : (options.jacobian == JacobianPolicy::every_step && it == 0));
     if (reactions) finite = finite && reactions->apply(state, trial, engine);
     if (!finite)
@@ -115,7 +116,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       continue;
     }
     if (e > kNewtonDiverged) return fail("diverges"), report;
-    slow = last > 0.0 && !close && !engine.may_grow() && !globalization.near() && e > 0.9 * last &&
+    slow = last > 0.0 && !close && !may_grow && !globalization.near() && e > 0.9 * last &&
                    e > options.tolerance
                ? slow + 1
                : 0;
@@ -156,6 +157,11 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     report.constraints = engine.check(state, trial);
     const ConstraintCheck& c = report.constraints;
     if (!std::isfinite(c.residual)) return fail("a value is not finite"), report;
+    // The last increment may have left the equation of a set-valued law for another one, which is
+    // open however small the increment was.
+    if (system.set_valued() && c.residual > left * system.length_scale() && stalled < kStalled &&
+        it + 1 < options.max_iterations)
+      continue;
     const double allowed = kEnergyLeak * options.energy_scale + kNewtonRoundOff * c.work_scale;
     const bool stagnates = iterated_again && it > 2 && c.work_defect > 0.5 * defect_before;
     defect_before = c.work_defect;

@@ -62,6 +62,7 @@ class Group final : public InteractionGroup {
     t.always_queried = item.always_queried();
     t.reversible = item.reversible();
     t.compliant = item.compliant();
+    t.set_valued = item.set_valued();
     t.holds_ground = item.holds_ground();
     t.impulse_sum = item.impulse_sum();
     t.work_entry = static_cast<short>(item.work_entry());

@@ -26,7 +26,7 @@ struct InteractionTraits {
   bool lazy_history = false, conservative = true, dissipates = false;
   bool works = false;  ///< work() must be called.
   bool prescribes = false, has_barrier = false, always_queried = false, reversible = false;
-  bool compliant = false, holds_ground = false;
+  bool compliant = false, set_valued = false, holds_ground = false;
   ImpulseSum impulse_sum = ImpulseSum::none;
   short work_entry = -1, impulse_entry = -1;  ///< In the history; −1: none.
   double coupled_mass = 0.0;                  ///< [kg]

@@ -61,6 +61,8 @@ struct InteractionItem {
   [[nodiscard]] bool works() const { return false; }
   /// Whether its rows have a compliance while they are active.
   [[nodiscard]] bool compliant() const { return false; }
+  /// Whether its rows are those of a set-valued law: iterations exchange the equations that hold.
+  [[nodiscard]] bool set_valued() const { return false; }
   /// Whether it has an inadmissible configuration: clearance() and impacts() are then used.
   [[nodiscard]] bool has_barrier() const { return false; }
   /// Clearance to that configuration at t_{n+1}: 0 there, 1 where the barrier becomes active.
@@ -195,7 +197,7 @@ concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
 /// Concept of an item with complete sets of related functions. A misspelt function hides nothing
 /// and is never called. At compile time this reveals it if it has a counterpart, or if items of
 /// its kind have to define it; not if it is one of those that stand alone: motion_basis, coupling,
-/// coupled_mass, reach, compliant, time_functions without time_order.
+/// coupled_mass, reach, compliant, set_valued, time_functions without time_order.
 template <class Item>
 concept Interaction = HasInteractionFunctions<Item> &&
                       // A history needs functions that initialise and commit it.

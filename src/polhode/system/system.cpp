@@ -54,7 +54,9 @@ void System::finish() {
       const int index = static_cast<int>(refs_.size());
       if (traits.has_barrier) barriers_.push_back(index);
       if (traits.prescribes) drives_.push_back(index);
-      stiff_ = stiff_ || (traits.rows > 0 && traits.works);
+      // Forces of set-valued laws are unknowns of their own, not functions of tiny displacements.
+      stiff_ = stiff_ || (traits.rows > 0 && traits.works && !traits.set_valued);
+      set_valued_ = set_valued_ || traits.set_valued;
       only_constraints_ = only_constraints_ && traits.rows > 0 && !traits.works &&
                           !traits.dissipates && !traits.compliant && !traits.has_barrier;
       if (basis) candidates.push_back({a, b, index, traits.reversible});

@@ -95,6 +95,8 @@ class System {
   [[nodiscard]] bool is_off(const State& state, int interaction) const;
   /// Whether joints have friction or stops: forces that change strongly over tiny displacements.
   [[nodiscard]] bool stiff() const { return stiff_; }
+  /// Whether there are set-valued laws, whose equations are exchanged during iterations.
+  [[nodiscard]] bool set_valued() const { return set_valued_; }
   /// Whether bodies interact by exact constraints alone, whose tangents are complete, so that
   /// Newton's method converges quadratically but for the proximal iteration of redundant rows.
   [[nodiscard]] bool only_constraints() const { return only_constraints_; }
@@ -145,6 +147,7 @@ class System {
   std::vector<double> carried_mass_;
   double mean_mass_ = 1.0, length_ = 1.0;
   bool conservative_ = true, dissipates_ = false, stiff_ = false, only_constraints_ = true;
+  bool set_valued_ = false;
   std::vector<int> barriers_, drives_;
   int memory_size_ = 0;
   bool finished_ = false;

@@ -310,12 +310,14 @@ class BreakSearch {
  public:
   BreakSearch(const Expression& expression, const Program& program, double after, double until)
       : expression_(expression), program_(program), after_(after), until_(until) {
-    root_ = std::exp2(std::ceil(std::log2(until)));
+    root_ = std::exp2(std::ceil(std::log2(std::max(until, -after))));
     least_ = 0x1p-70 * root_;
   }
 
   TimeBreak first() {
-    std::optional<TimeBreak> found = search(0.0, root_);
+    std::optional<TimeBreak> found;
+    if (after_ < 0.0) found = search(-root_, root_);
+    if (!found && until_ > 0.0) found = search(0.0, root_);
     if (!found && visits_ >= kMax) found = by_samples();
     return found.value_or(TimeBreak{});
   }
@@ -333,12 +335,16 @@ class BreakSearch {
     (void)run(program_, t, branches);
     return branches.chosen;
   }
-  [[nodiscard]] double least_width(double t) const { return std::max(least_, 0x1p-50 * t); }
+  [[nodiscard]] double least_width(double t) const {
+    return std::max(least_, 0x1p-50 * std::abs(t));
+  }
+  [[nodiscard]] bool passed(double t) const {
+    return t <= after_ + kSameBreak * std::abs(after_) + least_;
+  }
 
   std::optional<TimeBreak> search(double from, double width) {
     const double to = from + width;
-    if (to <= after_ * (1.0 + kSameBreak) + least_ || from > until_ || visits_ >= kMax)
-      return std::nullopt;
+    if (passed(to) || from > until_ || visits_ >= kMax) return std::nullopt;
     ++visits_;
     Branches branches;
     (void)run(program_, Interval(from, to), branches);
@@ -351,8 +357,7 @@ class BreakSearch {
   /// Break at a time, if the branches before and after it differ.
   [[nodiscard]] std::optional<TimeBreak> at(double t, double width) const {
     const double beside = kBeside * width, before = t - width - beside, after = t + beside;
-    if (t <= after_ * (1.0 + kSameBreak) + least_ || branches_at(before) == branches_at(after))
-      return std::nullopt;
+    if (passed(t) || branches_at(before) == branches_at(after)) return std::nullopt;
     const double jump = std::abs(expression_(after) - expression_(before));
     const double way = after - before;
     const double slopes = std::abs(expression_(after + way) - expression_(after)) +
@@ -388,7 +393,7 @@ class BreakSearch {
 }  // namespace
 
 TimeBreak Expression::next_break(double t, double until) const {
-  if (!depends_on_time_ || !(until > 0.0)) return {};
+  if (!depends_on_time_ || !(until > t)) return {};
   return BreakSearch(*this, program_, t, until).first();
 }
 
