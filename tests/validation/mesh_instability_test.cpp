@@ -7,6 +7,8 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation.hpp>
+#include <polhode/solids/cell_stability.hpp>
+#include <polhode/solids/materials/registry.hpp>
 
 namespace polhode::mesh_instability_tests {
 namespace {
@@ -83,6 +85,50 @@ TEST(MeshInstability, IsNotReportedForAColumnThatBuckles) {
   const RunSummary column = run(kColumn, "hex20", 0);
   ASSERT_GE(column.statics->unstable, 2);
   EXPECT_THAT(column.warnings, Not(Contains(HasSubstr(kMesh))));
+}
+
+/// A block of 4 × 1 × 4 cells of 0.25 × 1 × 0.25, clamped on one side and pressed along x by a
+/// plate without friction.
+constexpr const char* kFlatCells = R"(
+format: 1
+materials: {m: {type: MATERIAL, youngs_modulus: 1e6, poisson_ratio: 0.3, density: 1000}}
+bodies: {plate: {shape: {box: [0.1, 4, 4]}, density: 1000, position: [0.55, 0, 0], motion: {x: -0.3, y: 0, z: 0, rotation_vector: [0, 0, 0]}}}
+solids:
+  b:
+    mesh: {block: {size: [1, 1, 1], cells: [4, 1, 4]}}
+    element: hex8_eas9
+    material: m
+    prescribed: {base: {nodes: {plane: {axis: x, at: min}}, x: 0, y: 0, z: 0}}
+contacts: {default: {friction: 0}}
+analysis: {type: statics}
+output: {hdf5: false}
+)";
+
+// Compressed by 30 % such a block fails, or snaps away from the plate into another equilibrium, at
+// strains that depend on the load steps. Each run names the element and the stretch from which on
+// it has spurious modes, and no loss of stability comes before it.
+TEST(MeshInstability, OfFlatCellsWithEnhancedStrainsIsNamedBeforeTheyFail) {
+  constexpr double kWay = 0.3;
+  for (const char* material : {"neo_hookean", "elastic"}) {
+    const std::shared_ptr<const solids::Material> law = solids::make_material(
+        "m", {.kind = material, .values = {{"youngs_modulus", 1e6}, {"poisson_ratio", 0.3}}});
+    const double bound = solids::stable_stretch("hex8_eas9", law, {0.25, 1.0, 0.25}, 0);
+    for (const int steps : {5, 100}) {
+      std::string text = kFlatCells;
+      text.replace(text.find("MATERIAL"), 8, material);
+      Simulation s(
+          io::read_model_text(text, "flat.yaml", {format("analysis.load_steps={}", steps)}));
+      const RunSummary r = s.run();
+      EXPECT_THAT(r.warnings,
+                  Contains(HasSubstr(format("hex8_eas9 of this shape has spurious modes below "
+                                            "{:.2g}. ",
+                                            bound))))
+          << material << ' ' << steps;
+      EXPECT_TRUE(r.end == RunEnd::finished || r.end == RunEnd::not_converged);
+      for (const LimitPoint& point : r.statics->limit_points)
+        EXPECT_GT(kWay * point.load_factor, 1.0 - bound) << material << ' ' << steps;
+    }
+  }
 }
 
 }  // namespace
