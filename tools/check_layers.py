@@ -15,6 +15,7 @@ LAYERS = [
     ["system"],
     ["joints", "loads", "beams", "solids", "contact", "linear", "kernels"],
     ["surface_contact", "model", "equations"],
+    ["impulses"],
     ["engines", "newton"],
     ["stepping"],
     ["statics"],

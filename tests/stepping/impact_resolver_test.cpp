@@ -153,9 +153,7 @@ TEST(ImpactResolver, KeepsMomentaAndReportsEnergyLossesWithSolids) {
         EXPECT_GE(done.normal, -given);
         EXPECT_LE(done.friction.norm(), mu * (given + done.normal) + 1e-12);
         if (done.normal > -given) {
-          // With friction the sweeps end before that.
-          EXPECT_NEAR(t.speed(contacts.list[k]), contacts.list[k].impact.wanted,
-                      mu > 0.0 ? 1e-7 : 1e-11);
+          EXPECT_NEAR(t.speed(contacts.list[k]), contacts.list[k].impact.wanted, 1e-11);
         }
       }
       EXPECT_GT(lost, 1e-3);
@@ -229,6 +227,48 @@ TEST(ImpactResolver, TransmitsImpulsesThroughBodiesAtRest) {
   }
   EXPECT_NEAR(lost, 0.5 * kMass * kFall * kFall, 1e-9);
   for (int body : stack) EXPECT_LT(s.motion(body).v.norm(), 1e-9);
+}
+
+/// A row of bodies that a heavy one hits: to round-off at mass ratios at which sweeps creep; where
+/// an island is too large to be factored, the impact that misses its law most is reported.
+TEST(ImpactResolver, SolvesMassRatiosOrReportsWhatItMisses) {
+  for (const int light : {20, 120, 400}) {
+    Scene s(Vec3::Zero());
+    std::vector<int> row;
+    for (int k = 0; k <= light; ++k)
+      row.push_back(s.add_box("box " + std::to_string(k), {1.0, 1.0, 1.0}, k == light ? 1e4 : 1.0,
+                              at({0.0, 0.0, 0.5 + k}, {0.0, 0.0, k == light ? -2.0 : 0.0})));
+    s.begin(1e-2);
+    Stated contacts;
+    for (int k = light; k > 0; --k) {
+      PairImpact r;
+      r.bodies = {row[k], row[k - 1]};
+      r.impact.on_a << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
+      r.impact.on_b << 0.0, 0.0, -1.0, 0.0, 0.0, 0.0;
+      contacts.list.push_back(r);
+    }
+    ImpactResolver settle(s.system);
+    settle.find(s.state, contacts);
+    settle.settle(s.state);
+    UnsolvedImpacts unsolved;
+    settle.report(0.5, unsolved);
+    const double common = -2.0 * 1e4 / (1e4 + light);
+    if (light < 400) {
+      EXPECT_EQ(unsolved.steps, 0);
+      // Rounding of 1 kg under two impulses of 2e4 N s.
+      for (const int body : row) EXPECT_NEAR(s.motion(body).v.z(), common, 6e-10) << light;
+    } else {
+      EXPECT_EQ(unsolved.steps, 1);
+      EXPECT_EQ(unsolved.time, 0.5);
+      EXPECT_GE(unsolved.a, 0);
+      EXPECT_GE(unsolved.b, 0);
+      EXPECT_NEAR(unsolved.largest,
+                  std::abs(s.motion(unsolved.a).v.z() - s.motion(unsolved.b).v.z()), 1e-12);
+      settle.report(0.6, unsolved);
+      EXPECT_EQ(unsolved.steps, 2);
+      EXPECT_EQ(unsolved.time, 0.5);
+    }
+  }
 }
 
 }  // namespace

@@ -311,6 +311,36 @@ output: {hdf5: false}
   }
 }
 
+// Two bodies that turn as one, with a damper between points apart: nothing brakes a common
+// rotation, and momenta of bodies on a slide between them stay.
+// @tests{drag-law}
+TEST(Connectors, AVectorDamperLeavesACommonRotationAlone) {
+  const auto pair = [](const std::string& joint) {
+    return R"(
+format: 1
+variables: {h: 2 ms}
+bodies:
+  a: {mass: 2, inertia: [0.1, 0.2, 0.3], position: [-0.5, 0, 0], velocity: [0, -1, 0], angular_velocity: [0, 0, 2]}
+  b: {mass: 2, inertia: [0.1, 0.2, 0.3], position: [0.5, 0, 0], velocity: [0, 1, 0], angular_velocity: [0, 0, 2]}
+joints: {j: {type: )" +
+           joint + R"(, bodies: [a, b], at: [0, 0, 0]}}
+loads: {d: {type: vector_damper, bodies: [a, b], at: [[-0.7, 0.1, 0], [0.6, 0, 0.1]], damping: 3, turning_damping: 0.2}}
+analysis: {type: dynamics, duration: 1 s, step: h}
+output: {hdf5: false}
+)";
+  };
+  for (const Step& step : kSteps) {
+    const Outcome one = run(pair("fixed"), {step_of(step)});
+    EXPECT_NEAR(one.body(1).W.z(), 2.0, 1e-12) << step.text;
+    EXPECT_NEAR((one.body(1).v - one.body(0).v).norm(), 2.0, 1e-12) << step.text;
+    const Outcome slides =
+        run(pair("prismatic, axis: y"), {step_of(step), "bodies.b.velocity=[0, 3, 0]"});
+    EXPECT_LT((slides.body(1).v - slides.body(0).v).norm(), 3.0) << step.text;  // from 4 m/s
+    EXPECT_LT(slides.summary.angular_momentum_drift, 1e-12) << step.text;
+    EXPECT_LT(slides.summary.energy_drift, 1e-12) << step.text;
+  }
+}
+
 // A bead on surfaces: on a vertical cylinder it turns uniformly as it falls; on a horizontal one it
 // swings as a pendulum of its radius, from 90 degrees to the bottom in K(1/√2) √(R/g); on an
 // ellipsoid it conserves energy.

@@ -74,9 +74,6 @@ void expect_invariance(const std::string& text, const std::string& what, const s
     // Damped springs of contact close to 1.4e-8 in the finest steps, seen from any frame.
     EXPECT_LT(seen->summary.energy_drift, 1e-7);
     EXPECT_LT(seen->summary.linear_momentum_drift, 1e-9);
-    // Its forces on two points apart are no couple in balance: the law itself
-    // has a moment.
-    if (what == "vector_damper") continue;
     EXPECT_LT(seen->summary.angular_momentum_drift, 1e-9);
   }
 }

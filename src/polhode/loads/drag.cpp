@@ -53,35 +53,55 @@ VectorDamper::VectorDamper(const LoadDescription& load)
     : Z_a_(load.Z_a),
       Z_b_(load.Z_b),
       c_(load.value("damping", 0.0)),
-      c_turn_(load.value("turning_damping", 0.0)) {
+      c_turn_(load.value("turning_damping", 0.0)),
+      on_b_(load.bodies.b != kGround) {
   name = load.name;
   bodies = load.bodies;
 }
 
+VectorDamper::Slip VectorDamper::slip(const PairStep& step) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const auto centre = [](const BodyStep& body) { return Vec3(body.r_n + body.alpha_f * body.u); };
+  Slip s;
+  const Vec3 place = on_b_ ? b.point(Z_b_).at_alpha : a.point(Z_a_).at_alpha;
+  s.arm_a = place - centre(a);
+  s.arm_b = place - centre(b);
+  s.turning = b.omega_alpha() - a.omega_alpha();
+  s.velocity = b.velocity_alpha() + b.omega_alpha().cross(s.arm_b) - a.velocity_alpha() -
+               a.omega_alpha().cross(s.arm_a);
+  return s;
+}
+
 void VectorDamper::evaluate(const PairStep& step, PairTerms& t) const {
   const BodyStep &a = step.a, &b = step.b;
-  const Carried z_a = a.vector(Z_a_), z_b = b.vector(Z_b_);
-  const Vec3 w_a = a.omega_alpha(), w_b = b.omega_alpha();
-  const Vec3 F = -c_ * (b.velocity_alpha() + w_b.cross(z_b.at_alpha) - a.velocity_alpha() -
-                        w_a.cross(z_a.at_alpha));
-  const Vec3 M = -c_turn_ * (w_b - w_a);
-  t.wrench_b << F, z_b.at_alpha.cross(F) + M;
-  t.wrench_a << -F, -z_a.at_alpha.cross(F) - M;
+  const Slip s = slip(step);
+  const Vec3 F = -c_ * s.velocity, M = -c_turn_ * s.turning;
+  t.wrench_b << F, s.arm_b.cross(F) + M;
+  t.wrench_a << -F, -s.arm_a.cross(F) - M;
   if (step.context.tangents) {
-    const auto by = [&](const BodyStep& body, const Carried& z) {
-      Eigen::Matrix<double, 3, 6> D;
-      D << body.alpha_f * body.rate * Mat3::Identity(),
-          -hat(z.at_alpha) * body.omega_alpha_tangent() -
-              body.alpha_f * hat_hat(body.omega_alpha(), z.at_n1);
+    using Block = Eigen::Matrix<double, 3, 6>;
+    const auto of = [](const Mat3& by_place, const Mat3& by_turn) {
+      Block D;
+      D << by_place, by_turn;
       return D;
     };
-    const Eigen::Matrix<double, 3, 6> F_a = c_ * by(a, z_a), F_b = -c_ * by(b, z_b);
-    t.D_ba << F_a, hat(z_b.at_alpha) * F_a;
-    t.D_bb << F_b, hat(z_b.at_alpha) * F_b;
-    t.D_aa << -F_a, -hat(z_a.at_alpha) * F_a;
-    t.D_ab << -F_b, -hat(z_a.at_alpha) * F_b;
-    t.D_bb.bottomRightCorner<3, 3>() += b.alpha_f * hat_hat(F, z_b.at_n1);
-    t.D_aa.bottomRightCorner<3, 3>() -= a.alpha_f * hat_hat(F, z_a.at_n1);
+    const double af = b.alpha_f;
+    const Mat3 I = Mat3::Identity(), none = Mat3::Zero();
+    // Of the common place, of the arms and of the velocity, by the motions of a and b.
+    const BodyStep& owner = on_b_ ? b : a;
+    const Block place = af * of(I, -hat(owner.vector(on_b_ ? Z_b_ : Z_a_).at_n1));
+    const Block shift = af * of(I, none);
+    const Block place_a = on_b_ ? Block(Block::Zero()) : place, place_b = place - place_a;
+    const Mat3 turning = hat(s.turning);
+    const Block v_a = turning * place_a - of(af * a.rate * I - af * hat(a.omega_alpha()),
+                                             -hat(s.arm_a) * a.omega_alpha_tangent());
+    const Block v_b = turning * place_b + of(af * b.rate * I - af * hat(b.omega_alpha()),
+                                             -hat(s.arm_b) * b.omega_alpha_tangent());
+    const Mat3 by_force_a = hat(s.arm_a), by_force_b = hat(s.arm_b), force = hat(F);
+    t.D_ba << -c_ * v_a, -c_ * by_force_b * v_a - force * place_a;
+    t.D_bb << -c_ * v_b, -c_ * by_force_b * v_b - force * (place_b - shift);
+    t.D_aa << c_ * v_a, c_ * by_force_a * v_a + force * (place_a - shift);
+    t.D_ab << c_ * v_b, c_ * by_force_a * v_b + force * place_b;
     const Mat3 M_a = c_turn_ * a.omega_alpha_tangent(), M_b = -c_turn_ * b.omega_alpha_tangent();
     t.D_ba.bottomRightCorner<3, 3>() += M_a;
     t.D_bb.bottomRightCorner<3, 3>() += M_b;
@@ -92,21 +112,15 @@ void VectorDamper::evaluate(const PairStep& step, PairTerms& t) const {
 }
 
 Work VectorDamper::work(const PairStep& step) const {
-  const BodyStep &a = step.a, &b = step.b;
-  const Vec3 w_a = a.omega_alpha(), w_b = b.omega_alpha();
-  const Vec3 u_dot = b.velocity_alpha() + w_b.cross(b.vector(Z_b_).at_alpha) - a.velocity_alpha() -
-                     w_a.cross(a.vector(Z_a_).at_alpha);
-  return {.dissipated =
-              step.context.dt * (c_ * u_dot.squaredNorm() + c_turn_ * (w_b - w_a).squaredNorm())};
+  const Slip s = slip(step);
+  return {.dissipated = step.context.dt *
+                        (c_ * s.velocity.squaredNorm() + c_turn_ * s.turning.squaredNorm())};
 }
 
 std::vector<double> VectorDamper::report(const PairStep& step) const {
-  const BodyStep &a = step.a, &b = step.b;
-  const Vec3 w_a = a.omega_alpha(), w_b = b.omega_alpha();
-  const Vec3 u_dot = b.velocity_alpha() + w_b.cross(b.vector(Z_b_).at_alpha) - a.velocity_alpha() -
-                     w_a.cross(a.vector(Z_a_).at_alpha);
-  std::vector<double> list = numbers(-c_ * u_dot);
-  const Vec3 moment = -c_turn_ * (w_b - w_a);
+  const Slip s = slip(step);
+  std::vector<double> list = numbers(-c_ * s.velocity);
+  const Vec3 moment = -c_turn_ * s.turning;
   list.insert(list.end(), moment.data(), moment.data() + 3);
   return list;
 }

@@ -27,8 +27,10 @@ class Drag : public InteractionItem {
   Mat3 inertia_;
 };
 
-/// Damper between points against all of their relative velocity, and the relative rotation: force
-/// −c u̇, moment −c_θ (ω_b − ω_a). @eq{drag-law}
+/// Damper of the motion of a point on one body relative to another body: force −c u̇, moment
+/// −c_θ (ω_b − ω_a), with the velocities u̇ of both bodies at that point, as of a viscous medium
+/// that the other body carries. Forces and moments are in balance, and a common motion is free.
+/// @eq{drag-law}
 class VectorDamper : public InteractionItem {
  public:
   static constexpr const char* kKind = "vector_damper";
@@ -43,8 +45,16 @@ class VectorDamper : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
 
  private:
+  /// Relative motion at the common place, at t_{n+αf}.
+  struct Slip {
+    Vec3 arm_a, arm_b;       ///< From the centres of mass [m].
+    Vec3 velocity, turning;  ///< Of b relative to a [m/s, rad/s].
+  };
+  [[nodiscard]] Slip slip(const PairStep& step) const;
+
   Vec3 Z_a_, Z_b_;
   double c_, c_turn_;
+  bool on_b_;  ///< The point is that on b; if b is the ground, that on a.
 };
 
 void add_drag(System& system, const LoadDescription& load);

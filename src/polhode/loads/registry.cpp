@@ -104,11 +104,12 @@ const std::vector<LoadKind>& load_kinds() {
        {{"force", "N", 3}, {"length", "m"}, {"rate", "m/s"}, {"energy", "J"}},
        report_of<AxialForce>},
       {"vector_damper",
-       "damper between two points that resists their relative velocity in all directions, and the "
-       "relative rotation",
+       "damper that resists, in all directions, the velocity of the second body's point relative "
+       "to "
+       "the first body, and the relative rotation",
        LoadPlace::points,
        "",
-       {{"damping", "N*s/m", 0.0, 0.0, kMax, "force per relative velocity of the points"},
+       {{"damping", "N*s/m", 0.0, 0.0, kMax, "force per relative velocity at the point"},
         {"turning_damping", "N*m*s/rad", 0.0, 0.0, kMax, "moment per relative angular velocity"}},
        {},
        true,

@@ -165,10 +165,11 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const double allowed = kEnergyLeak * options.energy_scale + kNewtonRoundOff * c.work_scale;
     const bool stagnates = iterated_again && it > 2 && c.work_defect > 0.5 * defect_before;
     defect_before = c.work_defect;
-    if (c.work_defect <= allowed || system.rows() == 0 || stagnates) {
+    const bool exact = c.work_defect <= allowed || system.rows() == 0;
+    if (exact || stagnates) {
       engine.end_step(state, trial);
       report.converged = true;
-      report.hard = report.iterations > options.max_iterations;
+      report.hard = !exact && report.iterations > options.max_iterations;
       return report;
     }
   }

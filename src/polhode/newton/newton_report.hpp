@@ -17,9 +17,10 @@ struct NewtonReport {
   int iterations = 0;
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double rotation = 0.0;           ///< Largest |Θ| in the step [-].
-  bool hard = false;               ///< Converged, but slowly: beyond its iteration limit.
-  std::string reason;              ///< If not converged: "converges too slowly", ...
-  std::string worst;               ///< Location of the largest increment: "body 'forearm'".
+  /// Accepted beyond its iteration limit, with a leak of the multipliers above its tolerance.
+  bool hard = false;
+  std::string reason;  ///< If not converged: "converges too slowly", ...
+  std::string worst;   ///< Location of the largest increment: "body 'forearm'".
   ConstraintCheck constraints;
   [[nodiscard]] std::string text() const;  ///< One paragraph, with a hint what to try next.
 };

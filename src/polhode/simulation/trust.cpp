@@ -55,6 +55,16 @@ std::vector<std::string> reasons_for_distrust(const Model& model, const System& 
         format("joints or drives do not hold: the largest residual of their rows is {:.2g} m or "
                "rad. Look for joints and drives that contradict one another",
                ledger.constraint_max));
+  if (const UnsolvedImpacts& i = ledger.impacts; i.steps > 0) {
+    const auto name = [&](int body) {
+      return body == kGround ? std::string("the ground")
+                             : format("'{}'", system.bodies()[body].name);
+    };
+    reasons.push_back(
+        format("impacts do not meet their law in {} steps: velocities differ from it by up to "
+               "{:.2g} m/s, where {} meets {} at t = {:.6g} s. Take shorter steps",
+               i.steps, i.largest, name(i.a), name(i.b), i.time));
+  }
   return reasons;
 }
 

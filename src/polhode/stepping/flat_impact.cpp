@@ -77,7 +77,7 @@ bool ImpactResolver::lands_flat(const Island& island, const std::vector<Row>& ro
 
 /// Resolves the impact of an edge or a face that lands flat as that of one point, which may take a
 /// couple besides. @returns whether it did: not if a point would have to pull. @eq{routh}
-bool ImpactResolver::follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) const {
+bool ImpactResolver::follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) {
   const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
   const auto count = static_cast<Eigen::Index>(rows.size());
   const Eigen::Index m = count / 3;
@@ -103,7 +103,7 @@ bool ImpactResolver::follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) c
   for (Eigen::Index i = 0; i < m; ++i)
     if (!(std::abs(before[3 * i] - before[0]) <= kFlat * std::abs(before[0]))) return false;
   if (friction_alone(*course)) {
-    apply_friction(rows, v);
+    solve_rows(rows, v, Acts::friction);
     return true;
   }
   const OnePoint one = one_point(K, turns);

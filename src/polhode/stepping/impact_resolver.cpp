@@ -12,14 +12,8 @@ namespace polhode {
 
 namespace {
 
-/// Gauss-Seidel sweeps over the rows of an island end when no impulse changes by more than this
-/// part of the largest one, or after a maximum number.
-constexpr double kConverged = 1e-13;
-constexpr int kMaxSweeps = 500;
 /// Largest number of rounds in which resting contacts are added to the rows.
 constexpr int kMaxCarried = 30;
-/// Mobility of a row, as a part of the largest one, below which the row cannot move.
-constexpr double kHeld = 1e-13;
 /// Relative change of a target speed below which the speed is kept.
 constexpr double kSameSpeed = 1e-12;
 /// Part of the dissipation by friction in a step that impulses may return.
@@ -126,6 +120,7 @@ Work ImpactResolver::settle(State& state) {
   pressed_.assign(before.size(), Vec6::Zero());
   pressed_nodes_.clear();
   pulls_ = false;
+  unsolved_ = {};
   for (PairImpact& row : rows_)
     if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
   settle_from(state, 0);
@@ -210,7 +205,12 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
   std::vector<Vec6> to_admissible;
   if (tied) {
     if (!solver_) solver_ = std::make_unique<InstantSolver>(*system_);
-    if (!solver_->take_impulses(state)) return;
+    if (!solver_->take_impulses(state)) {
+      for (const Island& island : all)
+        for (const int k : island.rows)
+          note_error(k, std::abs(rows_[k].impact.wanted - speed(state, k)), 0.0);
+      return;
+    }
     to_admissible = solver_->jumps_to_admissible(state);
     pulls_ = true;
   }
@@ -232,75 +232,6 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
     }
     settle(state, island, std::move(rows[i]));
     jumped_.insert(jumped_.end(), island.bodies.begin(), island.bodies.end());
-  }
-}
-
-namespace {
-
-/// Point of the friction cone, an ellipse with these half axes, on the ray to p.
-Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
-  if (!(along > 0.0 && across > 0.0)) return Eigen::Vector2d::Zero();
-  const double size = std::hypot(p.x() / along, p.y() / across);
-  return size > 1.0 ? Eigen::Vector2d(p / size) : p;
-}
-
-}  // namespace
-
-/// Updates the friction impulses towards zero slip within the cone: a step by the larger mobility
-/// of the two tangents. @eq{impact-friction}
-double ImpactResolver::apply_friction(Row& along, Row& across, double normal,
-                                      std::vector<Vec6>& v) const {
-  const Impact& impact = rows_[along.impact].impact;
-  const Eigen::Vector2d slip(along.speed(v), across.speed(v)),
-      friction_impulse(impact.along.dot(impact.friction_impulse),
-                       impact.across.dot(impact.friction_impulse)),
-      before(along.impulse, across.impulse),
-      after = in_cone(friction_impulse + before - slip / std::max(along.mobility, across.mobility),
-                      impact.mu * normal, impact.mu_across * normal) -
-              friction_impulse;
-  along.apply(after.x() - before.x(), v);
-  across.apply(after.y() - before.y(), v);
-  return (after - before).lpNorm<Eigen::Infinity>();
-}
-
-/// Projected Gauss-Seidel sweeps over all impulses of an island. Normal impulses aim at the target
-/// speeds but return at most the impulse of the step; friction stops the slip within its cone.
-/// @eq{impact-friction}
-void ImpactResolver::sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const {
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    double change = 0.0, largest = 0.0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      Row& row = rows[i];
-      const Impact& impact = rows_[row.impact].impact;
-      if (row.mobility > kHeld * most) {
-        double p = (impact.wanted - row.speed(v)) / row.mobility;
-        p = std::max(p, -impact.given - row.impulse);
-        if (p != 0.0) row.apply(p, v);
-        change = std::max(change, std::abs(p));
-      }
-      const double normal = std::max(0.0, impact.given + row.impulse);
-      largest = std::max(largest, normal);
-      if (i + 1 == rows.size() || !rows[i + 1].has_friction) continue;
-      Row &along = rows[i + 1], &across = rows[i + 2];
-      i += 2;
-      if (!(along.mobility + across.mobility > kHeld * most)) continue;
-      change = std::max(change, apply_friction(along, across, normal, v));
-    }
-    if (!(change > kConverged * largest)) break;
-  }
-}
-
-/// Friction of all points without further normal impulses.
-void ImpactResolver::apply_friction(std::vector<Row>& rows, std::vector<Vec6>& v) const {
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    double change = 0.0, largest = 0.0;
-    for (std::size_t i = 0; i + 2 < rows.size(); i += 3) {
-      if (!(rows[i + 1].mobility + rows[i + 2].mobility > kHeld * rows[i].mobility)) continue;
-      const double given = rows_[rows[i].impact].impact.given;
-      largest = std::max(largest, given);
-      change = std::max(change, apply_friction(rows[i + 1], rows[i + 2], given, v));
-    }
-    if (!(change > kConverged * largest)) break;
   }
 }
 
@@ -331,9 +262,9 @@ Vec3 impulse_by_routh(const Mat3& K, const Eigen::Vector2d& mu, const ImpactCour
 }
 
 /// Resolves an impact that shares its bodies with no other one. @eq{routh}
-void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
+void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) {
   const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
-  if (friction_alone(*course)) return apply_friction(rows, v);
+  if (friction_alone(*course)) return solve_rows(rows, v, Acts::friction);
   Mat3 K;
   Vec3 now;
   for (int i = 0; i < 3; ++i) {
@@ -386,7 +317,7 @@ void ImpactResolver::settle(State& state, const Island& island, std::vector<Row>
       if (!friction_alone(*r.course)) r.impact.wanted = rows[i].speed(v);
     }
   } else {
-    sweep(rows, most, v);
+    solve_rows(rows, v, Acts::all);
   }
   // ΔT = Σ p (J v before + J v after)/2: quadratic along the jump.
   double first = 0.0, second = 0.0;

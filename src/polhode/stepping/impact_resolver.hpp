@@ -31,6 +31,9 @@ class ImpactResolver {
   /// Changes the velocities of the state, which has moved to t_{n+1}.
   /// @returns the change of the energy stored by surfaces, and their dissipation.
   Work settle(State& state);
+  /// Adds the impacts of the last settle() that were not solved to those of the run.
+  /// @param t  Their time [s].
+  void report(double t, UnsolvedImpacts& impacts) const;
   /// Work of drives in the impacts just settled [J].
   [[nodiscard]] double drive_work() const { return drive_work_; }
 
@@ -82,11 +85,14 @@ class ImpactResolver {
   [[nodiscard]] Work turn_surfaces(State& state) const;
   void tell_surfaces(State& state) const;
   double apply_friction(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
-  void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
-  void apply_friction(std::vector<Row>& rows, std::vector<Vec6>& v) const;
-  void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
+  /// Whether the impulses of the normals act too, or friction alone.
+  enum class Acts { all, friction };
+  bool sweep(std::vector<Row>& rows, Acts acts, std::vector<Vec6>& v) const;
+  void solve_rows(std::vector<Row>& rows, std::vector<Vec6>& v, Acts acts);
+  void note_error(int row, double error, double fastest);
+  void follow(std::vector<Row>& rows, std::vector<Vec6>& v);
   [[nodiscard]] bool lands_flat(const Island& island, const std::vector<Row>& rows) const;
-  [[nodiscard]] bool follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) const;
+  [[nodiscard]] bool follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v);
   /// Adds the impulses of rows and stops since these velocities to the sums of joints and drives.
   void record(State& state, std::span<const Vec6> bodies, std::span<const double> nodes);
   /// Work of prescribed nodes. @param before  Velocities before the impacts.
@@ -119,6 +125,7 @@ class ImpactResolver {
   std::vector<double> pressed_nodes_;    ///< On free nodes, three each; empty: none.
   bool pulls_ = false;                   ///< Rows of tied bodies have been settled.
   double drive_work_ = 0.0;              ///< Of the last impacts [J].
+  UnsolvedImpacts unsolved_;             ///< Of the last impacts.
   std::vector<int> numbers_;  ///< Rows of contacts, in the order of the contacts' list; −1: none.
 };
 

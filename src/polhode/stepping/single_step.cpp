@@ -176,6 +176,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
     const Work work = impacts_.settle(state);
     ledger_.add_jump(state, before, impacts_.drive_work());
     ledger_.add(state, work);
+    impacts_.report(state.t, state.ledger.impacts);
   }
   state.dt_last = dt;
   state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);

@@ -40,6 +40,15 @@ struct StepErrors {
   double hard_time = 0.0;    ///< End of the first of these [s].
 };
 
+/// Impacts whose impulses do not meet the law of impact: velocities that differ from it by more
+/// than their rounding allows.
+struct UnsolvedImpacts {
+  std::int64_t steps = 0;  ///< Number of steps with one.
+  double largest = 0.0;    ///< Largest error of a velocity [m/s].
+  double time = 0.0;       ///< Its time [s].
+  int a = -1, b = -1;      ///< Its bodies; −1: not known, or the ground.
+};
+
 /// Balance of the run so far, in SI units.
 struct Ledger {
   double initial_energy = 0.0;                     ///< T + V at the start [J].
@@ -53,6 +62,7 @@ struct Ledger {
   double energy_noise = 0.0, p_noise = 0.0, l_noise = 0.0;
   double constraint_max = 0.0;  ///< Largest residual [m or -].
   StepErrors errors;
+  UnsolvedImpacts impacts;
   std::int64_t steps = 0, rejected = 0, iterations = 0;
 };
 

@@ -194,6 +194,11 @@ void ledger(Archive& archive, const System& system, AnyLedger& l) {
   archive.whole(l.errors.steps, 0, kMost);
   archive.whole(l.errors.hard, 0, kMost);
   archive(l.errors.hard_time);
+  archive.whole(l.impacts.steps, 0, kMost);
+  archive(l.impacts.largest);
+  archive(l.impacts.time);
+  archive.whole(l.impacts.a, -1, system.body_count() - 1);
+  archive.whole(l.impacts.b, -1, system.body_count() - 1);
   archive.whole(l.steps, 0, kMost);
   archive.whole(l.rejected, 0, kMost);
   archive.whole(l.iterations, 0, kMost);
