@@ -197,5 +197,36 @@ TEST_P(Contradiction, OfACrankBeyondItsReachEndsTheRunAtTheLimitPosition) {
                     HasSubstr("joint 'C'"), HasSubstr("joint 'D'"), HasSubstr("rotary_motor 'm'")));
 }
 
+/// The slider with two drives beside balls on a floor, which conjugate gradients solve, and with a
+/// solid on it, whose nodes are condensed.
+TEST(ContradictionWithOtherParts, IsNamedByEveryEngineAtEveryStep) {
+  std::string balls = "  floor: {fixed: true, shape: {plane: z}}\n";
+  for (int k = 0; k < 64; ++k)
+    balls += format("  ball_{}: {{shape: {{sphere: 0.1}}, mass: 1, position: [{}, {}, 0.05]}}\n", k,
+                    2.0 + 0.2 * (k % 8), 0.2 * (k / 8));
+  const std::string solid =
+      R"(materials: {m: {type: elastic, youngs_modulus: 1e7, poisson_ratio: 0, density: 1000}}
+solids: {bar: {mesh: {block: {size: [1, 0.1, 0.1], cells: [4, 1, 1]}, position: [0.5, 0, 0]}, material: m, bonded: {a: xmin}}}
+)";
+  for (const auto& [bodies, sections] :
+       {std::pair(balls, std::string("contacts: {}\ngravity: [0, 0, -9.81]\n")),
+        std::pair(std::string(), solid)})
+    for (const char* step : {"50 ms", "10 ms", "0.1 ms"}) {
+      Simulation s = made(format(R"(format: 1
+bodies:
+  a: {{mass: 1, inertia: [1, 1, 1], motion: {{x: t^2, y: 0, z: 0}}}}
+{}joints: {{S: {{type: prismatic, bodies: [ground, a], at: [0, 0, 0], axis: x}}}}
+loads: {{m1: {{type: linear_motor, joint: S, displacement: t^3}}}}
+{}analysis: {{duration: 1, step: {}}}
+)",
+                                 bodies, sections, step));
+      const RunSummary r = s.run();
+      expect_right_end(r);
+      EXPECT_LE(r.t, 1e-6) << step;  // the gap t² is then below the tolerance of rows
+      EXPECT_THAT(r.message, AllOf(HasSubstr("linear_motor 'm1'"), HasSubstr("joint 'a.motion'")))
+          << step;
+    }
+}
+
 }  // namespace
 }  // namespace polhode::test::contradiction_tests
