@@ -178,6 +178,17 @@ def test_a_step_that_does_not_converge_raises_with_what_was_computed(pendulum: p
     assert error.value.result.frames >= 1 and error.value.result.end == "not_converged"
 
 
+@pytest.mark.parametrize("step", ["50 ms", "10 ms", "0.1 ms"])
+def test_drives_that_contradict_each_other_raise_by_their_names(step: str) -> None:
+    m = polhode.Model(analysis={"duration": 1, "step": step})
+    m.add_body("a", mass=1, inertia=[1, 1, 1], motion={"x": "t^2", "y": 0, "z": 0})
+    m.add_joint("S", "prismatic", ["ground", "a"], at=[0, 0, 0], axis="x")
+    m.add_load("m1", "linear_motor", joint="S", displacement="t^3")
+    with pytest.raises(polhode.NotConverged, match="linear_motor 'm1'") as error:
+        polhode.run(m)
+    assert "a.motion" in str(error.value) and error.value.result.ledger.t == 0
+
+
 def test_statics_runs_over_the_load_factor() -> None:
     m = polhode.Model(gravity=[0, 0, -10], analysis={"type": "statics", "load_steps": 4})
     m.add_body("b", mass=2, inertia=[1, 1, 1])
