@@ -78,7 +78,8 @@ struct Place {
 /// steep valley, where both slopes act.
 const Place kPlaces[] = {{-0.5, 0.55}, {0.02, 0.55}, {0.1, 0.6}, {0.6, 0.75}};
 
-// @tests{cable-on-mesh} @tests{cable-mesh-friction}
+// @tests{cable-on-mesh} @tests{cable-mesh-friction} @tests{four-point-distance}
+// @tests{central-gap}
 TEST(CableOnMesh, HasTheTangentOfItsForces) {
   for (const Place& place : kPlaces)
     for (const double rho_inf : {1.0, 0.5})

@@ -74,7 +74,7 @@ surface_contact::SurfaceLaw law(double mu, double end_share = 0.0) {
   return soft_law(kTolerance, mu, end_share);
 }
 
-// @tests{four-point-distance} @tests{central-gap} @tests{mesh-friction}
+// @tests{patch-force} @tests{mesh-friction}
 TEST(SolidContact, HasTheTangentOfItsForces) {
   for (const double rho_inf : {1.0, 0.5})
     for (const double mu : {0.0, 0.05, 5.0})
@@ -124,7 +124,7 @@ TEST(SolidContact, HasContinuousFrictionAcrossTriangles) {
   }
 }
 
-// @tests{mesh-contact}
+// @tests{mesh-contact} @tests{patch-force}
 TEST(SolidContact, BalancesWorkAndEnergyAndKeepsMomenta) {
   for (const double way : {0.02, 0.12, 0.5})
     for (const double mu : {0.0, 0.05, 5.0})

@@ -60,6 +60,12 @@ class CentralGapOf {
   /// Points at t_{n+αf}, those of t_n's features first.
   [[nodiscard]] const Vec3& at_alpha(int point) const { return x_alpha_[point]; }
   [[nodiscard]] Force force(double lambda) const;
+  /// Resultant on the first point of each set, which is the same one.
+  [[nodiscard]] Vec3 on_point(const Force& f) const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < points_; k += 4) sum += f.template segment<3>(3 * k);
+    return sum;
+  }
   /// D force / D x_{n+1}.
   [[nodiscard]] Stiffness stiffness(const contact::ForceAndSlope& lambda) const;
   /// D d_{n+1} / D x_{n+1}.

@@ -34,10 +34,13 @@ class Triangulation {
       triangle(n[5], n[4], n[2]);
       triangle(n[3], n[4], n[5]);
     } else if (shape == "quad4") {
+      MeshSurface::Face face{4, {}, static_cast<int>(surface_.triangles.size())};
+      for (std::size_t k = 0; k < 4; ++k) face.vertex[k] = vertex(n[k]);
       fan({n[0], n[1], n[2], n[3]}, middle(n));
+      surface_.faces.push_back(face);
     } else {
-      fan({n[0], n[4], n[1], n[5], n[2], n[6], n[3], n[7]},
-          shape == "quad9" ? vertex(n[8]) : middle(n));
+      fan_of_faces({n[0], n[4], n[1], n[5], n[2], n[6], n[3], n[7]},
+                   shape == "quad9" ? vertex(n[8]) : middle(n));
     }
   }
   MeshSurface take() { return std::move(surface_); }
@@ -59,8 +62,14 @@ class Triangulation {
     surface_.vertices.push_back(m);
     return static_cast<int>(surface_.vertices.size()) - 1;
   }
-  void triangle(int a, int b, int c) {
-    surface_.triangles.push_back({vertex(a), vertex(b), vertex(c)});
+  void triangle(int a, int b, int c) { face(vertex(a), vertex(b), vertex(c)); }
+  void face(int a, int b, int c) {
+    surface_.faces.push_back({3, {a, b, c, -1}, static_cast<int>(surface_.triangles.size())});
+    surface_.triangles.push_back({a, b, c});
+  }
+  void fan_of_faces(const std::vector<int>& around, int centre) {
+    for (std::size_t k = 0; k < around.size(); ++k)
+      face(vertex(around[k]), vertex(around[(k + 1) % around.size()]), centre);
   }
   void fan(const std::vector<int>& around, int centre) {
     for (std::size_t k = 0; k < around.size(); ++k)

@@ -12,7 +12,8 @@ namespace polhode::surface_contact {
 
 /// A point of a mesh: Σ N_a x_a.
 struct MeshPoint {
-  static constexpr int kMaxNodes = 9;
+  /// Nodes of two points on patches and of a point of a face, together.
+  static constexpr int kMaxNodes = 41;
   int count = 0;
   int node[kMaxNodes]{};
   double N[kMaxNodes]{};
@@ -31,8 +32,16 @@ struct MeshPoint {
 /// uniform pressure gives the consistent corner forces of a parallelogram; faces with midside nodes
 /// in as many triangles as these require.
 struct MeshSurface {
+  /// Corners of a face, and the triangles it is divided into.
+  struct Face {
+    int corners = 3;              ///< Or 4.
+    std::array<int, 4> vertex{};  ///< Counterclockwise seen from outside.
+    int first_triangle = 0;
+  };
   std::vector<MeshPoint> vertices;
   std::vector<std::array<int, 3>> triangles;  ///< Counterclockwise seen from outside.
+  /// Quadrilaterals, and the triangles of all other faces, in the order of `triangles`.
+  std::vector<Face> faces;
 };
 [[nodiscard]] MeshSurface triangulated(const std::vector<solids::LoadedFaces>& faces);
 

@@ -8,6 +8,13 @@
 
 namespace polhode::surface_contact {
 
+namespace {
+
+/// Distance from the edge of a face, over the face's size, below which a point is over the edge.
+constexpr double kOnEdge = 1e-6;
+
+}  // namespace
+
 SolidContact::SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
                            const SurfaceLaw& law, const SolidContactStart& start, RoundLine cable)
     : name_(std::move(name)),
@@ -17,7 +24,34 @@ SolidContact::SolidContact(std::string name, std::vector<MeshPoint> points, Mesh
       self_(start.self),
       cable_(std::move(cable)),
       centre_(of_cable() ? cable_.radius : law.normal.tolerance),
-      nodes_({&points_, &surface_.vertices}, start) {}
+      nodes_({&points_, &surface_.vertices}, start) {
+  if (!of_cable()) round_edges();
+}
+
+/// Patches, and for each point the width of rounded edges. A point that is opposite to the surface
+/// at the start, but not exactly over an edge, is outside of it: overlaps of both meshes, whose
+/// weights are those of the faces, then load both evenly.
+void SolidContact::round_edges() {
+  std::vector<double> history(nodes_.key_size());
+  nodes_.write_start(history.data());
+  const std::vector<double> places = nodes_.positions(history.data());
+  const Field start(surface_, places.data());
+  patches_ = smooth_patches(surface_, start.vertices);
+  for (std::size_t k = 0; k < patches_.size(); ++k)
+    patch_of_.insert(patch_of_.end(), static_cast<std::size_t>(patches_[k].triangles()),
+                     static_cast<int>(k));
+  width_.assign(points_.size(), kRoundedEdge);
+  if (self_) return;
+  const Search& s = search(history.data());
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const Nearest n = nearest(start, found(s, p), p);
+    if (n.triangle < 0) continue;
+    const PatchFoot& f = n.foot;
+    for (const double side : {f.xi, 1.0 - f.xi, f.eta, 1.0 - f.eta})
+      if (side > kOnEdge)
+        width_[static_cast<std::size_t>(p)] = std::min(width_[static_cast<std::size_t>(p)], side);
+  }
+}
 
 const MeshPoint& SolidContact::corner(int point, int triangle, int k) const {
   if (k == 0) return points_[static_cast<std::size_t>(point)];
@@ -31,15 +65,52 @@ void SolidContact::four_points(const Field& field, int point, int triangle, Vec3
   for (std::size_t k = 0; k < 3; ++k) x[k + 1] = field.vertices[static_cast<std::size_t>(t[k])];
 }
 
-SolidContact::Nearest SolidContact::nearest(const Field& field, std::span<const int> triangles,
-                                            int point) const {
+SolidContact::Nearest SolidContact::nearest_triangle(const Field& field,
+                                                     std::span<const int> triangles,
+                                                     int point) const {
   Nearest best;
-  best.four.distance = std::numeric_limits<double>::infinity();
+  best.distance = std::numeric_limits<double>::infinity();
   for (const int t : triangles) {
     Vec3 x[4];
     four_points(field, point, t, x);
     const NearestFour four = nearest_of_triangle(x);
-    if (four.distance < best.four.distance) best = {t, four};
+    if (four.distance < best.distance) {
+      best.triangle = t;
+      best.four = four;
+      best.distance = four.distance;
+    }
+  }
+  return best;
+}
+
+void SolidContact::vertices_of(const SurfacePatch& patch, const std::vector<Vec3>& vertices,
+                               Vec3 (&x)[SurfacePatch::kSize]) const {
+  for (std::size_t a = 0; a < patch.vertex.size(); ++a)
+    x[a] = patch.vertex[a] < 0 ? Vec3(Vec3::Zero())
+                               : vertices[static_cast<std::size_t>(patch.vertex[a])];
+}
+
+SolidContact::Nearest SolidContact::nearest(const Field& field, std::span<const int> triangles,
+                                            int point) const {
+  if (of_cable()) return nearest_triangle(field, triangles, point);
+  Nearest best;
+  best.distance = std::numeric_limits<double>::infinity();
+  const Vec3 p = points_[static_cast<std::size_t>(point)].at(field.nodes);
+  int last = -1;
+  for (const int t : triangles) {
+    const int k = patch_of_[static_cast<std::size_t>(t)];
+    if (k == last) continue;
+    last = k;
+    const SurfacePatch& patch = patches_[static_cast<std::size_t>(k)];
+    Vec3 x[SurfacePatch::kSize];
+    vertices_of(patch, field.vertices, x);
+    if (least_distance(patch, p, x) > best.distance) continue;
+    const PatchFoot foot = nearest_of_patch(patch, p, x, width_[static_cast<std::size_t>(point)]);
+    if (!(foot.distance < best.distance)) continue;
+    best.triangle = foot.triangle;
+    best.foot = foot;
+    best.foot.patch = k;
+    best.distance = foot.distance;
   }
   return best;
 }
@@ -54,8 +125,7 @@ FourMoves SolidContact::moves(const Field& x_n1, const Field& u, int point, int 
 MeshGap SolidContact::gap(const Field& field, std::span<const int> triangles, int point,
                           const Nearest& nearest, const contact::NormalLaw& law) const {
   const double reach = centre_ + law.reach();
-  if (!of_cable() || nearest.four.distance >= reach)
-    return MeshGap::of(nearest.triangle, nearest.four);
+  if (nearest.distance >= reach) return MeshGap::of(nearest.triangle, nearest.four);
   std::vector<TriangleAt> near;
   for (const int t : triangles) {
     TriangleAt at;
@@ -78,8 +148,8 @@ SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, c
   const Nearest to = nearest(x_n1, triangles, point);
   const Nearest from = step.x_n == step.x_n1 ? to : nearest(x_n, triangles, point);
   const double reach = law.reach();
-  a.gap_n = from.four.distance - centre_;
-  a.gap_n1 = to.four.distance - centre_;
+  a.gap_n = from.distance - centre_;
+  a.gap_n1 = to.distance - centre_;
   if (a.gap_n >= reach && a.gap_n1 >= reach) return a;
   a.acts = true;
   if (step.context.conserving && step.context.dt > 0.0) {
@@ -88,11 +158,17 @@ SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, c
                               with_band_lowered);
     in_step = a.phase.law(law_, with_band_lowered);
   }
-  a.at_n1 = gap(x_n1, triangles, point, to, law);
-  a.at_n = step.x_n == step.x_n1 ? a.at_n1 : gap(x_n, triangles, point, from, law);
-  const double resultant = a.gap_n < reach ? a.at_n.resultant : a.at_n1.resultant;
-  a.gap_n = a.at_n.distance - centre_;
-  a.gap_n1 = a.at_n1.distance - centre_;
+  double resultant = 1.0;
+  if (of_cable()) {
+    a.at_n1 = gap(x_n1, triangles, point, to, law);
+    a.at_n = step.x_n == step.x_n1 ? a.at_n1 : gap(x_n, triangles, point, from, law);
+    resultant = a.gap_n < reach ? a.at_n.resultant : a.at_n1.resultant;
+    a.gap_n = a.at_n.distance - centre_;
+    a.gap_n1 = a.at_n1.distance - centre_;
+  } else {
+    a.foot_n1 = to.foot;
+    a.foot_n = from.foot;
+  }
   if (step.context.dt == 0.0)
     a.pressure = {law.force(a.gap_n1), 0.0};
   else

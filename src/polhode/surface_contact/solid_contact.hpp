@@ -8,6 +8,7 @@
 #include <polhode/surface_contact/contact_neighbours.hpp>
 #include <polhode/surface_contact/line_stretch.hpp>
 #include <polhode/surface_contact/mesh_gap.hpp>
+#include <polhode/surface_contact/patch_gap.hpp>
 #include <polhode/surface_contact/point_memory.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_constraint.hpp>
@@ -16,13 +17,14 @@
 
 namespace polhode::surface_contact {
 
-/// Contact of points of a solid's surface with the triangles of another surface, or of its own: the
-/// potential Σ A β(d − g_tol), with d the distance of a point to the nearest triangle.
+/// Contact of points of a solid's surface with another surface, or with its own: the potential
+/// Σ A β(d − g_tol), with d the distance of a point to the nearest smooth patch of that surface.
 ///
 /// d is never negative: surfaces are kept apart, by 2 g_tol where they exert no pressure. Forces
-/// act along connecting lines of points, see CentralGap, so energy and both momenta are conserved
-/// exactly at ρ∞ = 1, whichever triangle is the nearest one. Each point has a list of candidate
-/// triangles, see ContactNeighbours. @eq{mesh-contact}
+/// act along the lines to the nearest points, see PatchGap, so energy and both momenta are
+/// conserved exactly at ρ∞ = 1, whichever patch is the nearest one. Each point has a list of
+/// candidate triangles, see ContactNeighbours; a patch counts where one of its triangles does.
+/// @eq{mesh-contact}
 ///
 /// Points of a cable stay its radius away, and their distance to triangles is a MeshGap: the gap is
 /// the distance minus the radius. @eq{cable-on-mesh}
@@ -95,14 +97,17 @@ class SolidContact final : public ElementGroup,
     std::vector<int> first, triangle;
     ContactNeighbours::Blocks blocks;
   };
-  /// The nearest triangle of a point.
+  /// The nearest triangle or patch of a point.
   struct Nearest {
     int triangle = -1;
-    NearestFour four;
+    NearestFour four;  ///< On the triangle.
+    PatchFoot foot;    ///< On the patch, unless the point is one of a cable.
+    double distance = 0.0;
   };
   /// An active point over a step.
   struct Action {
-    MeshGap at_n, at_n1;
+    MeshGap at_n, at_n1;                  ///< Of a cable.
+    PatchFoot foot_n, foot_n1;            ///< Of a solid.
     contact::ForceAndSlope pressure;      ///< Conjugate to the distance.
     contact::ForceAndSlope normal_force;  ///< Resultant on the point.
     double gap_n = 0.0, gap_n1 = 0.0;     ///< [m]
@@ -128,10 +133,20 @@ class SolidContact final : public ElementGroup,
   [[nodiscard]] const Search& search(const double* history) const;
   void find(Search& s) const;
   [[nodiscard]] bool may_meet(int point, int triangle) const;
+  [[nodiscard]] bool may_meet_triangle(int point, int triangle) const;
   [[nodiscard]] std::span<const int> found(const Search& s, int point) const;
   void four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const;
   [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
                                 int point) const;
+  [[nodiscard]] Nearest nearest_triangle(const Field& field, std::span<const int> triangles,
+                                         int point) const;
+  void vertices_of(const SurfacePatch& patch, const std::vector<Vec3>& vertices,
+                   Vec3 (&x)[SurfacePatch::kSize]) const;
+  [[nodiscard]] PatchVector vector_to(int point, const PatchFoot& foot) const {
+    return {points_[static_cast<std::size_t>(point)],
+            patches_[static_cast<std::size_t>(foot.patch)], foot, surface_.vertices};
+  }
+  void round_edges();
   [[nodiscard]] SurfaceLaw law_of(const PointMemory& memory) const {
     return with_band_lowered(law_, memory.phase.lowered);
   }
@@ -158,7 +173,8 @@ class SolidContact final : public ElementGroup,
   /// Rate of the gap at t_n.
   [[nodiscard]] double rate_n(const NodeStep& step, const Field& x_n, const Nearest& nearest,
                               int point) const;
-  void add_rates(const Field& x, const MeshGap& gap, int point, SurfaceImpact& impact) const;
+  void add_rates(const NodeStep& step, const Field& x, const Action& a, int point,
+                 SurfaceImpact& impact) const;
   [[nodiscard]] Slide slide(const NodeStep& step, const Field& x_n1, const Field& u,
                             std::span<const int> triangles, int point, double pressure,
                             const PointMemory& memory, bool tangent) const;
@@ -171,6 +187,9 @@ class SolidContact final : public ElementGroup,
   std::string name_;
   std::vector<MeshPoint> points_;
   MeshSurface surface_;
+  std::vector<SurfacePatch> patches_;  ///< Of a contact of solids.
+  std::vector<int> patch_of_;          ///< By triangle.
+  std::vector<double> width_;          ///< By point, of rounded edges.
   SurfaceLaw law_;
   bool self_ = false;
   RoundLine cable_;

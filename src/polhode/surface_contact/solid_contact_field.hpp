@@ -17,11 +17,17 @@ struct SolidContact::Field {
   }
 };
 
-/// Calls use(gap, at) with the CentralGapOf of a point over a step and the MeshPoint of each point
-/// in it.
+/// Calls use(gap, at) with the PatchGap, or of a cable the CentralGapOf, of a point over a step and
+/// the MeshPoint of each block of its results.
 template <class Use>
 void SolidContact::with_gap(const NodeStep& step, const Field& x_n1, const Field& u, int point,
                             const Action& a, Use&& use) const {
+  if (!of_cable()) {
+    const PatchVector from = vector_to(point, a.foot_n), to = vector_to(point, a.foot_n1);
+    const PatchGap gap(step, from, to, a.foot_n.distance, a.foot_n1.distance);
+    use(gap, [&](int k) -> const MeshPoint& { return gap.at(k); });
+    return;
+  }
   const auto of = [&](int triangle) { return moves(x_n1, u, point, triangle); };
   if (a.at_n.single() && a.at_n1.single()) {
     const MeshGap::Part &from = a.at_n.parts.front(), &to = a.at_n1.parts.front();

@@ -44,8 +44,9 @@ Work SolidContact::work(const NodeStep& step, const double* history,
     const double area = points_[static_cast<std::size_t>(p)].area;
     if (instant) {
       const contact::NormalLaw law = law_of(kept).normal;
+      const Nearest n = nearest(x_n1, triangles, p);
       const double gap =
-          this->gap(x_n1, triangles, p, nearest(x_n1, triangles, p), law).distance - centre_;
+          (of_cable() ? this->gap(x_n1, triangles, p, n, law).distance : n.distance) - centre_;
       w.stored += area * (law.energy(gap) + 0.5 * law_.bristle * Vec3(kept.bristle).squaredNorm());
       continue;
     }
@@ -84,8 +85,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
         slide = this->slide(step, x_n1, u, triangles, p, a.normal_force.value, kept, false);
       h = slide.friction;
       with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& /*at*/) {
-        const auto f = gap.force(a.pressure.value);
-        for (int k = 0; k < gap.points(); k += 4) h += f.template segment<3>(3 * k);
+        h += gap.on_point(gap.force(a.pressure.value));
       });
       const Energies e = energies(step, a, slide, kept);
       t.friction_loss += point.area * e.by_friction;
@@ -121,7 +121,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
   nodes_.renew(step, history);
 }
 
-/// From the triangles to a point.
+/// From the triangles to a point of a cable.
 Vec3 SolidContact::normal(const Field& field, const MeshGap& gap, int point) const {
   Vec3 sum = Vec3::Zero();
   for (const MeshGap::Part& part : gap.parts) {
@@ -147,7 +147,7 @@ void SolidContact::write_start(double* history) const {
   const Field start(surface_, x.data());
   double least = std::numeric_limits<double>::infinity();
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
-    const double d = nearest(start, found(s, p), p).four.distance;
+    const double d = nearest(start, found(s, p), p).distance;
     least = std::min(least, d - cable_.radius);
     PointMemory memory = memory_of(history, p);
     memory.phase = {lowered_for(law_, d - centre_)};
@@ -173,13 +173,18 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
     const std::span<const int> triangles = found(s, p);
     const Nearest n = nearest(x, triangles, p);
     if (n.triangle < 0) continue;
-    const MeshGap gap = this->gap(x, triangles, p, n, law_of(kept).normal);
-    list.push_back({.point = foot(x, gap, p),
-                    .normal = normal(x, gap, p),
-                    .force = point.area * Vec3(kept.force),
-                    .friction = point.area * Vec3(kept.friction),
-                    .gap = gap.distance - cable_.radius,
-                    .pressure = kept.pressure});
+    SurfacePointReport& r = list.emplace_back();
+    if (of_cable()) {
+      const MeshGap gap = this->gap(x, triangles, p, n, law_of(kept).normal);
+      r = {.point = foot(x, gap, p), .normal = normal(x, gap, p), .gap = gap.distance - radius()};
+    } else {
+      r = {.point = point.at(x.nodes),
+           .normal = vector_to(p, n.foot).between(x.nodes).normalized(),
+           .gap = n.distance};
+    }
+    r.force = point.area * Vec3(kept.force);
+    r.friction = point.area * Vec3(kept.friction);
+    r.pressure = kept.pressure;
   }
   return list;
 }

@@ -57,6 +57,17 @@ const SolidContact::Search& SolidContact::search(const double* history) const {
 /// Whether a point and a triangle may be in contact: not if it belongs to the triangle or moves
 /// with it, nor, on one surface, if they are near at the start.
 bool SolidContact::may_meet(int point, int triangle) const {
+  if (!of_cable() && !patch_of_.empty()) {
+    const SurfacePatch& patch =
+        patches_[static_cast<std::size_t>(patch_of_[static_cast<std::size_t>(triangle)])];
+    for (int t = 0; t < patch.triangles(); ++t)
+      if (!may_meet_triangle(point, patch.first_triangle + t)) return false;
+    return true;
+  }
+  return may_meet_triangle(point, triangle);
+}
+
+bool SolidContact::may_meet_triangle(int point, int triangle) const {
   const MeshPoint& p = points_[static_cast<std::size_t>(point)];
   const auto corner = [&](int k) -> const MeshPoint& { return this->corner(point, triangle, k); };
   if (nodes_.carried_together({&p, &corner(1), &corner(2), &corner(3)})) return false;
@@ -119,6 +130,10 @@ void SolidContact::find(Search& s) const {
       if (together.empty()) add(points_[p]);
       s.triangle.push_back(met[k].second);
       for (int c = 1; c < 4; ++c) add(corner(static_cast<int>(p), met[k].second, c));
+      if (of_cable()) continue;
+      const auto t = static_cast<std::size_t>(met[k].second);
+      for (const int v : patches_[static_cast<std::size_t>(patch_of_[t])].vertex)
+        if (v >= 0) add(surface_.vertices[static_cast<std::size_t>(v)]);
     }
     s.first[p + 1] = static_cast<int>(s.triangle.size());
     if (!together.empty()) sets.push_back(std::move(together));
@@ -147,8 +162,7 @@ void SolidContact::clearances(const NodeStep& step, const double* history,
   const Field x(surface_, step.x_n1);
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const Nearest n = nearest(x, found(s, p), p);
-    const double d =
-        n.triangle < 0 ? kFar : clearance(n.four.distance) / (2.0 * law_.normal.tolerance);
+    const double d = n.triangle < 0 ? kFar : clearance(n.distance) / (2.0 * law_.normal.tolerance);
     list.push_back(std::min(kFar, d));
   }
 }
@@ -157,14 +171,41 @@ struct SolidContact::Way {
   struct Corner {
     Vec3 at, move;
   };
+  struct OnPatch {
+    const SurfacePatch* patch;
+    std::array<Corner, SurfacePatch::kSize> corner;
+  };
   Corner point;
   std::vector<std::array<Corner, 3>> triangles;
+  std::vector<OnPatch> patches;
+  double width = 0.0;
   double length = 0.0;  ///< Largest relative displacement of a corner and the point.
 
   Way(const SolidContact& c, const Field& from, const Field& to, std::span<const int> list, int p) {
     const MeshPoint& own = c.points_[static_cast<std::size_t>(p)];
     point.at = own.at(from.nodes);
     point.move = own.at(to.nodes) - point.at;
+    if (!c.of_cable()) {
+      width = c.width_[static_cast<std::size_t>(p)];
+      int last = -1;
+      for (const int t : list) {
+        const int k = c.patch_of_[static_cast<std::size_t>(t)];
+        if (k == last) continue;
+        last = k;
+        OnPatch& on = patches.emplace_back();
+        on.patch = &c.patches_[static_cast<std::size_t>(k)];
+        for (std::size_t a = 0; a < on.corner.size(); ++a) {
+          if (on.patch->vertex[a] < 0) {
+            on.corner[a] = {Vec3::Zero(), Vec3::Zero()};
+            continue;
+          }
+          const auto v = static_cast<std::size_t>(on.patch->vertex[a]);
+          on.corner[a] = {from.vertices[v], to.vertices[v] - from.vertices[v]};
+          length = std::max(length, on.patch->stretch() * (on.corner[a].move - point.move).norm());
+        }
+      }
+      return;
+    }
     for (const int t : list) {
       auto& triangle = triangles.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) {
@@ -178,6 +219,13 @@ struct SolidContact::Way {
   [[nodiscard]] double distance(double part) const {
     const auto at = [&](const Corner& c) { return Vec3(c.at + part * c.move); };
     double least = std::numeric_limits<double>::infinity();
+    const Vec3 p = at(point);
+    for (const OnPatch& on : patches) {
+      Vec3 x[SurfacePatch::kSize];
+      for (std::size_t a = 0; a < on.corner.size(); ++a) x[a] = at(on.corner[a]);
+      if (least_distance(*on.patch, p, x) < least)
+        least = std::min(least, nearest_of_patch(*on.patch, p, x, width).distance);
+    }
     for (const auto& t : triangles)
       least = std::min(least, distance_to(at(point), at(t[0]), at(t[1]), at(t[2])));
     return least;
@@ -217,7 +265,7 @@ double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
       if (beside && Way(*this, x_n, x_to, triangles, p).comes_nearer(through))
         most = std::min(most, kShorter);
     }
-    const double now = clearance(nearest(x, triangles, p).four.distance);
+    const double now = clearance(nearest(x, triangles, p).distance);
     if (now <= 0.0) continue;
     most = conservative_advancement(most, now, kLeave * std::min(now, band), way.length,
                                     [&](double part) { return clearance(way.distance(part)); });
@@ -262,7 +310,7 @@ std::optional<SurfaceOverlap> SolidContact::overlap(const NodeStep& instant) con
   };
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
-    const Nearest n = nearest(x, triangles, p);
+    const Nearest n = nearest_triangle(x, triangles, p);
     if (n.triangle < 0) continue;
     const double d = signed_distance(x, triangles, p, n);
     const Vec3 out = way_out(x, n, p, d);
@@ -287,7 +335,7 @@ std::vector<double> SolidContact::gaps_at_start() const {
   std::vector<double> list;
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
-    const Nearest n = nearest(x, triangles, p);
+    const Nearest n = nearest_triangle(x, triangles, p);
     list.push_back(n.triangle < 0 ? std::numeric_limits<double>::quiet_NaN()
                                   : signed_distance(x, triangles, p, n) - cable_.radius);
   }

@@ -22,6 +22,10 @@ Vec3 way_between(const Vec3 (&x)[4], const NearestFour& four) {
 
 double SolidContact::rate_n(const NodeStep& step, const Field& x_n, const Nearest& nearest,
                             int point) const {
+  if (!of_cable()) {
+    const PatchVector y = vector_to(point, nearest.foot);
+    return y.between(x_n.nodes).normalized().dot(y.between(step.v_n));
+  }
   Vec3 x[4], v = Vec3::Zero();
   four_points(x_n, point, nearest.triangle, x);
   for (int k = 0; k < 4; ++k)
@@ -32,13 +36,28 @@ double SolidContact::rate_n(const NodeStep& step, const Field& x_n, const Neares
 /// Adds the rates of a point. The normal rate is that of the combined distance of all nearby
 /// features over their resultant on the point; the point slides on the nearest one.
 /// @eq{mesh-impact}
-void SolidContact::add_rates(const Field& x, const MeshGap& gap, int point,
+void SolidContact::add_rates(const NodeStep& step, const Field& x, const Action& a, int point,
                              SurfaceImpact& impact) const {
   const auto add = [&](int triangle, int k, const Mat3& J) {
     const MeshPoint& at = corner(point, triangle, k);
-    for (int a = 0; a < at.count; ++a) impact.add(at.node[a], at.N[a] * J);
+    for (int i = 0; i < at.count; ++i) impact.add(at.node[i], at.N[i] * J);
   };
   Vec3 resultant = Vec3::Zero(), at[4];
+  const auto slide = [&](int triangle, const NearestFour& four) {
+    four_points(x, point, triangle, at);
+    const std::array<Mat3, 4> slip = slip_rates(at, four.c, impact.normal, {1, 2, 1, 3});
+    for (int k = 0; k < 4; ++k) add(triangle, k, slip[static_cast<std::size_t>(k)]);
+  };
+  if (!of_cable()) {
+    const PatchVector y = vector_to(point, a.foot_n1);
+    impact.normal = y.between(step.x_n1).normalized();
+    for (int k = 0; k < y.way.count; ++k)
+      impact.add(y.way.node[k], y.way.N[k] * impact.normal * impact.normal.transpose());
+    four_points(x, point, a.foot_n1.triangle, at);
+    slide(a.foot_n1.triangle, nearest_of_triangle(at));
+    return;
+  }
+  const MeshGap& gap = a.at_n1;
   for (const MeshGap::Part& part : gap.parts) {
     four_points(x, point, part.triangle, at);
     resultant += part.share * way_between(at, part.four).normalized();
@@ -51,10 +70,7 @@ void SolidContact::add_rates(const Field& x, const MeshGap& gap, int point,
     for (int k = 0; k < 4; ++k)
       add(part.triangle, k, part.four.c[k] * impact.normal * n.transpose());
   }
-  const MeshGap::Part& nearest = gap.parts.front();
-  four_points(x, point, nearest.triangle, at);
-  const std::array<Mat3, 4> slip = slip_rates(at, nearest.four.c, impact.normal, {1, 2, 1, 3});
-  for (int k = 0; k < 4; ++k) add(nearest.triangle, k, slip[static_cast<std::size_t>(k)]);
+  slide(gap.parts.front().triangle, gap.parts.front().four);
 }
 
 /// @eq{surface-turn} @eq{mesh-impact}
@@ -75,13 +91,14 @@ void SolidContact::impacts(const NodeStep& step, const double* history,
     const double area = points_[static_cast<std::size_t>(p)].area;
     SurfaceImpact& impact = list.emplace_back();
     impact.point = p;
-    add_rates(x_n1, a.at_n1, p, impact);
+    add_rates(step, x_n1, a, p, impact);
     impact.restitution = a.phase.restitution;
     impact.turned = a.phase.is(contact::ContactPhase::restitution);
     impact.mu = law_.mu;
     impact.given = step.context.dt * area * a.normal_force.value;
     const contact::NormalLaw law = a.phase.law(law_, with_band_lowered).normal;
     const double all = law.force(a.gap_n1);
+    if (!of_cable()) impact.terms.push_back({1.0, a.gap_n1});
     for (const MeshGap::Part& part : a.at_n1.parts) {
       const double own = part.four.distance - centre_;
       // Multiplicities of features are integers.
