@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from . import rotations
     from ._equations import StepEquations, step_equations
     from ._linear import StateSpace, inverse_dynamics, linearize
-    from ._modes import Matrices, Mode, Modes, matrices, modes
+    from ._modes import Matrices, Mode, Modes, matrices, modes, spin_modes
     from ._result import Result, open
     from ._run import run
     from ._simulation import Simulation, Step
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _LATER = {
     "_equations": ["StepEquations", "step_equations"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
-    "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes"],
+    "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes", "spin_modes"],
     "_result": ["Result", "open"],
     "_run": ["run"],
     "_simulation": ["Simulation", "Step"],
@@ -49,7 +49,8 @@ _HOME = {name: module for module, names in _LATER.items() for name in names}
 __all__ = [
     "BodyReading", "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
     "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations", "__version__", "fit", "from_text",
-    "inverse_dynamics", "linearize", "load", "matrices", "modes", "open", "rotations", "run", "step_equations", "sweep",
+    "inverse_dynamics", "linearize", "load", "matrices", "modes", "open", "rotations", "run", "spin_modes",
+    "step_equations", "sweep",
 ]
 
 

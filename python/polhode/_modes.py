@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
@@ -22,7 +23,9 @@ class Mode:
 
     frequency |λ|/2π [Hz]; eigenvalue λ, complex [rad/s]; damping_ratio -Re λ/|λ| [-]; kind:
     oscillation, flutter, divergence, overdamped or free; motion: description of a free one;
-    participation (3,) [√kg] and effective_mass (3,) [-] along x, y, z; residual [-].
+    participation (3,) [√kg] and effective_mass (3,) [-] along x, y, z; residual [-]. About a spin
+    frequency is that in the turning frame; whirl: forward, backward, none or unknown, and
+    world_frequency [Hz] that in the world, or None.
     """
 
     frequency: float
@@ -30,6 +33,8 @@ class Mode:
     kind: str
     motion: str
     residual: float
+    whirl: str
+    world_frequency: "Optional[float]"
 
     def __init__(self, values: "dict[str, Any]") -> None:
         self.eigenvalue = complex(*values.pop("eigenvalue"))
@@ -47,9 +52,11 @@ class Mode:
 
 
 class Modes(list):  # type: ignore[type-arg]
-    """Modes of a model: divergence first, then by |λ|. total_mass [kg]; warnings, texts."""
+    """Modes of a model: divergence first, then by |λ|. total_mass [kg]; warnings, texts; spin [rad/s],
+    the speed of the frame in which they are seen."""
 
     total_mass: float
+    spin: float
     warnings: "list[str]"
 
     @property
@@ -72,15 +79,50 @@ def modes(
     equilibrium.
     """
     model = model if isinstance(model, Model) else load(model)
-    found = _native.modes(model._compile(overrides), count, about)
+    return _modes_of(_native.modes(model._compile(overrides), count, about))
+
+
+def _modes_of(found: "dict[str, Any]") -> Modes:
     if found["message"]:
         raise NotConverged(found["message"])
     result = Modes(Mode(values) for values in found["modes"])
     result.total_mass = found["total_mass"]
     result.warnings = found["warnings"]
+    result.spin = found["spin"]
     for warning in result.warnings:
-        warnings.warn(warning, stacklevel=2)
+        warnings.warn(warning, stacklevel=3)
     return result
+
+
+def spin_modes(
+    model: "Union[Model, str, os.PathLike[str]]",
+    spin: "Union[None, float, str, Sequence[float]]" = None,
+    *,
+    axis: "Union[None, str, Sequence[float]]" = None,
+    through: "Optional[Sequence[float]]" = None,
+    ground: Optional[str] = None,
+    count: Optional[int] = None,
+    about: Optional[str] = None,
+    overrides: Overrides = None,
+) -> "list[Modes]":
+    """Modes about a steady spin at each of its speeds, seen from the turning frame.
+
+    spin: a speed [rad/s], several, or a text such as "0:3000:500 rpm"; axis: "z" or a vector; through: a
+    point of the axis [m]; ground: "stands" or "turns". None: analysis.spin, spin_axis, spin_through and
+    spin_ground of the model. count and about as in modes(). Raises ModelError for a model with faults or
+    one that is not steady in that frame, NotConverged if there is no equilibrium at a speed.
+    """
+    model = model if isinstance(model, Model) else load(model)
+
+    def text(value: Any) -> str:
+        if value is None:
+            return ""
+        return json.dumps(value if isinstance(value, str) else np.asarray(value, dtype=float).tolist())
+
+    found = _native.spin_modes(
+        model._compile(overrides), count, about, text(spin), text(axis), text(through), text(ground)
+    )
+    return [_modes_of(values) for values in found]
 
 
 class Matrices(NamedTuple):

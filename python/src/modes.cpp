@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/modal.hpp>
 
 #include <polhode/statics/modal_matrices.hpp>
@@ -22,6 +23,8 @@ nb::dict mode(const ModalAnalysis& analysis, int index) {
   result["participation"] = array_of(m.participation);
   result["effective_mass"] = array_of(m.effective_mass);
   result["residual"] = m.residual;
+  result["whirl"] = whirl_name(m.whirl);
+  result["world_frequency"] = m.world_frequency;
   nb::dict shapes;
   for (std::size_t b = 0; b < analysis.model().bodies.size(); ++b) {
     std::vector<double> parts;
@@ -35,26 +38,56 @@ nb::dict mode(const ModalAnalysis& analysis, int index) {
   return result;
 }
 
-nb::dict modes(const CompiledModel& compiled, std::optional<int> count,
-               std::optional<std::string> about) {
+nb::dict report_of(const ModalAnalysis& analysis) {
+  nb::list list;
+  for (std::size_t i = 0; i < analysis.report().modes.size(); ++i)
+    list.append(mode(analysis, static_cast<int>(i)));
+  nb::dict result;
+  result["message"] = analysis.message();
+  result["modes"] = list;
+  result["total_mass"] = analysis.report().total_mass;
+  result["warnings"] = nb::cast(analysis.report().warnings);
+  result["spin"] = analysis.spin();
+  return result;
+}
+
+Model changed_model(const CompiledModel& compiled, std::optional<int> count,
+                    std::optional<std::string> about) {
   Model changed = compiled.model;
   changed.analysis.count = count.value_or(compiled.model.analysis.count);
   changed.analysis.about = about.value_or(compiled.model.analysis.about);
+  return changed;
+}
+
+/// Modes at each speed of a spin; texts as in a model file, empty ones are those of the model.
+nb::list spin_modes(const CompiledModel& compiled, std::optional<int> count,
+                    std::optional<std::string> about, std::string spin, std::string axis,
+                    std::string through, std::string ground) {
+  Model changed = changed_model(compiled, count, std::move(about));
+  std::vector<ModalAnalysis> analyses;
+  {
+    const nb::gil_scoped_release unlocked;
+    analyses = located(io::ModelPlaces(compiled.model), [&] {
+      io::set_spin({std::move(spin), std::move(axis), std::move(through), std::move(ground)},
+                   changed.analysis);
+      return spin_analyses(changed);
+    });
+  }
+  nb::list list;
+  for (const ModalAnalysis& analysis : analyses) list.append(report_of(analysis));
+  return list;
+}
+
+nb::dict modes(const CompiledModel& compiled, std::optional<int> count,
+               std::optional<std::string> about) {
+  Model changed = changed_model(compiled, count, std::move(about));
   std::unique_ptr<ModalAnalysis> analysis;
   {
     const nb::gil_scoped_release unlocked;
     analysis = located(io::ModelPlaces(compiled.model),
                        [&] { return std::make_unique<ModalAnalysis>(std::move(changed)); });
   }
-  nb::list list;
-  for (std::size_t i = 0; i < analysis->report().modes.size(); ++i)
-    list.append(mode(*analysis, static_cast<int>(i)));
-  nb::dict result;
-  result["message"] = analysis->message();
-  result["modes"] = list;
-  result["total_mass"] = analysis->report().total_mass;
-  result["warnings"] = nb::cast(analysis->report().warnings);
-  return result;
+  return report_of(*analysis);
 }
 
 Array matrix(const Mat& A) {
@@ -77,6 +110,9 @@ nb::tuple matrices(Engine& engine) {
 
 void bind_modes(nb::module_& m) {
   m.def("modes", &modes, nb::arg("model"), nb::arg("count").none(), nb::arg("about").none());
+  m.def("spin_modes", &spin_modes, nb::arg("model"), nb::arg("count").none(),
+        nb::arg("about").none(), nb::arg("spin"), nb::arg("axis"), nb::arg("through"),
+        nb::arg("ground"));
   m.def("matrices", &matrices, nb::arg("engine"));
 }
 

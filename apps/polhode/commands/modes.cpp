@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/write_campbell.hpp>
 #include <polhode/io/results/write_modes.hpp>
 #include <polhode/io/text/file_error.hpp>
 
@@ -20,33 +23,51 @@ namespace {
 struct ModesOptions {
   ModelArguments model;
   std::string folder, about;
+  io::SpinText spin;
   int count = 0;
   bool json = false, quiet = false;
 };
+
+/// Texts of the command line as values of a model file.
+io::SpinText quoted(io::SpinText text) {
+  for (std::string* value : {&text.spin, &text.axis, &text.through, &text.ground})
+    if (!value->empty() && value->front() != '[') *value = nlohmann::json(*value).dump();
+  return text;
+}
 
 int modes(const ModesOptions& options) {
   Model model = load_model(options.model);
   if (options.count > 0) model.analysis.count = options.count;
   if (!options.about.empty()) model.analysis.about = options.about;
+  io::set_spin(quoted(options.spin), model.analysis);
   return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
 }
 
 nlohmann::ordered_json vector_json(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
+/// @param spins  Adds what belongs to modes about a spin.
+nlohmann::ordered_json mode_json(const Mode& m, bool spins) {
+  nlohmann::ordered_json json = {{"frequency", m.frequency},
+                                 {"damping_ratio", m.damping},
+                                 {"kind", kind_name(m.kind)},
+                                 {"eigenvalue", {m.eigenvalue.real(), m.eigenvalue.imag()}},
+                                 {"omega_squared", m.omega_squared},
+                                 {"rigid", m.rigid},
+                                 {"motion", m.motion},
+                                 {"participation", vector_json(m.participation)},
+                                 {"effective_mass", vector_json(m.effective_mass)},
+                                 {"residual", m.residual}};
+  if (!spins) return json;
+  json["whirl"] = whirl_name(m.whirl);
+  json["world_frequency"] = m.world_frequency ? nlohmann::ordered_json(*m.world_frequency)
+                                              : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
 std::string modes_json(const ModalAnalysis& analysis, int code, const std::string& folder) {
   const ModesReport& r = analysis.report();
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Mode& m : r.modes)
-    list.push_back({{"frequency", m.frequency},
-                    {"damping_ratio", m.damping},
-                    {"kind", kind_name(m.kind)},
-                    {"eigenvalue", {m.eigenvalue.real(), m.eigenvalue.imag()}},
-                    {"omega_squared", m.omega_squared},
-                    {"rigid", m.rigid},
-                    {"motion", m.motion},
-                    {"participation", vector_json(m.participation)},
-                    {"effective_mass", vector_json(m.effective_mass)},
-                    {"residual", m.residual}});
+  for (const Mode& m : r.modes) list.push_back(mode_json(m, false));
   const nlohmann::ordered_json complete =
       r.counted ? nlohmann::ordered_json(r.complete) : nlohmann::ordered_json(nullptr);
   const nlohmann::ordered_json freedoms =
@@ -64,6 +85,14 @@ std::string modes_json(const ModalAnalysis& analysis, int code, const std::strin
                                        {"warnings", r.warnings},
                                        {"results", folder}};
   return json.dump(2);
+}
+
+io::Provenance provenance_of(const ModelArguments& arguments) {
+  return {.version = POLHODE_VERSION,
+          .solver = "mumps",
+          .model_file = std::filesystem::path(arguments.file).filename().string(),
+          .model_text = io::read_file(arguments.file),
+          .overrides = arguments.overrides};
 }
 
 std::string remark(const Mode& m) {
@@ -97,24 +126,79 @@ std::string modes_table(const ModesReport& r) {
   return text;
 }
 
+std::string spin_json(const std::vector<ModalAnalysis>& analyses, int code,
+                      const std::string& folder) {
+  nlohmann::ordered_json speeds = nlohmann::ordered_json::array();
+  for (const ModalAnalysis& analysis : analyses) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Mode& m : analysis.report().modes) list.push_back(mode_json(m, true));
+    speeds.push_back({{"spin", analysis.spin()},
+                      {"message", analysis.message()},
+                      {"modes", list},
+                      {"warnings", analysis.report().warnings}});
+  }
+  return nlohmann::ordered_json{{"exit_code", code}, {"speeds", speeds}, {"results", folder}}.dump(
+      2);
+}
+
+std::string spin_table(const std::vector<ModalAnalysis>& analyses) {
+  std::vector<std::vector<std::string>> rows{
+      {"spin rad/s", "mode", "Hz turning", "Hz in world", "whirl", "damping", ""}};
+  bool damped = false;
+  for (const ModalAnalysis& analysis : analyses)
+    for (std::size_t i = 0; i < analysis.report().modes.size(); ++i) {
+      const Mode& m = analysis.report().modes[i];
+      damped = damped || m.damping != 0.0;
+      const bool whirls = m.whirl == Whirl::forward || m.whirl == Whirl::backward;
+      rows.push_back({i == 0 ? format("{:g}", analysis.spin()) : std::string(), format("{}", i + 1),
+                      format("{:.6g}", m.frequency),
+                      m.world_frequency ? format("{:.6g}", *m.world_frequency) : std::string("-"),
+                      whirls ? whirl_name(m.whirl) : "-", format("{:.3g}", m.damping), remark(m)});
+    }
+  if (!damped)
+    for (std::vector<std::string>& row : rows) row.erase(row.begin() + 5);
+  return table(rows);
+}
+
+/// Computes, writes and prints the modes at all speeds of a spin. @returns the exit code.
+int run_spin(const Model& model, const ModelArguments& arguments, const std::string& folder,
+             bool json, bool quiet) {
+  std::vector<ModalAnalysis> analyses = spin_analyses(model, &stop_wanted);
+  int code = kOk;
+  for (const ModalAnalysis& analysis : analyses) {
+    for (const std::string& warning : analysis.report().warnings)
+      say(format("warning: at {:g} rad/s: {}", analysis.spin(), warning));
+    if (analysis.converged()) continue;
+    code = wall_limit_reached ? kLimit : stop_wanted ? kInterrupted : kNotConverged;
+    say(format("At {:g} rad/s: {}", analysis.spin(), analysis.message()));
+  }
+  if (json) print(spin_json(analyses, code, folder) + "\n");
+  if (!analyses.back().converged()) analyses.pop_back();
+  if (analyses.empty()) return code;
+  const io::Provenance provenance = provenance_of(arguments);
+  for (std::size_t i = 0; i < analyses.size(); ++i)
+    io::write_modes(analyses[i],
+                    analyses.size() == 1 ? folder : format("{}/speed_{}", folder, i + 1),
+                    provenance);
+  io::write_campbell(analyses, folder);
+  if (!json && !quiet) print(spin_table(analyses));
+  return code;
+}
+
 }  // namespace
 
 int run_modes(Model model, const ModelArguments& arguments, std::string folder, bool json,
               bool quiet) {
   if (folder.empty())
     folder = std::filesystem::path(arguments.file).replace_extension(".results").string();
+  if (!model.analysis.spin.empty()) return run_spin(model, arguments, folder, json, quiet);
   const ModalAnalysis analysis(std::move(model), &stop_wanted);
   const int code = analysis.converged() ? kOk
                    : wall_limit_reached ? kLimit
                    : stop_wanted        ? kInterrupted
                                         : kNotConverged;
   if (analysis.converged())
-    io::write_modes(analysis, folder,
-                    {.version = POLHODE_VERSION,
-                     .solver = "mumps",
-                     .model_file = std::filesystem::path(arguments.file).filename().string(),
-                     .model_text = io::read_file(arguments.file),
-                     .overrides = arguments.overrides});
+    io::write_modes(analysis, folder, provenance_of(arguments));
   else
     say(analysis.message());
   for (const std::string& warning : analysis.report().warnings) say("warning: " + warning);
@@ -139,6 +223,26 @@ Action add_modes(CLI::App& command) {
       .add_option("--about", options->about,
                   "The equilibrium found from the start, or the start itself")
       ->check(CLI::IsMember({"equilibrium", "start"}));
+  command
+      .add_option("--spin", options->spin.spin,
+                  "Modes about a steady spin, seen from the turning frame: a speed, [a, b, ...] or "
+                  "first:last:step, rad/s or with a unit; left out: analysis.spin")
+      ->type_name("SPEEDS");
+  command
+      .add_option(
+          "--axis", options->spin.axis,
+          "Axis of the spin: x, y, z or [x, y, z]; left out: analysis.spin_axis, or that of "
+          "the velocities")
+      ->type_name("AXIS");
+  command
+      .add_option("--through", options->spin.through,
+                  "A point [x, y, z] of the axis; left out: analysis.spin_through")
+      ->type_name("POINT");
+  command
+      .add_option("--ground", options->spin.ground,
+                  "Whether the ground stands, or turns with the model; left out: "
+                  "analysis.spin_ground")
+      ->check(CLI::IsMember({"stands", "turns"}));
   command.add_flag("--json", options->json, "Print frequencies as one JSON object");
   command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] { return modes(*options); };

@@ -10,6 +10,7 @@
 #include <polhode/compile/beam_mesh.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>
+#include <polhode/compile/centrifugal_forces.hpp>
 #include <polhode/compile/joint_resistance.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/core/error.hpp>
@@ -44,6 +45,7 @@ class Builder {
     map_.contacts = build_contacts(model_, map_.body, map_.contact);
     add_surface_contacts(system_, model_, map_.body, map_.solids, map_.contact);
     system_.set_contacts(map_.contacts);
+    if (model_.analysis.turning) add_centrifugal_forces(system_, model_);
     add_switching();
     system_.finish();
     if (map) fill(*map);

@@ -12,6 +12,7 @@
 #include <polhode/core/source_location.hpp>
 #include <polhode/core/time_function.hpp>
 #include <polhode/core/types.hpp>
+#include <polhode/dynamics/turning_frame.hpp>
 #include <polhode/joints/enforcement.hpp>
 #include <polhode/joints/frame_motion.hpp>
 #include <polhode/loads/load_function.hpp>
@@ -165,7 +166,13 @@ struct AnalysisSpec {
   std::optional<double> history;
   int count = 10;                     ///< Number of modes.
   std::string about = "equilibrium";  ///< Modes: equilibrium | start.
-  double checkpoint_every = 0.0;      ///< Wall-clock seconds; 0: only at the end.
+  /// Modes: speeds of a steady spin, in whose frame they are seen [rad/s]; none: at rest.
+  std::vector<double> spin;
+  std::optional<Vec3> spin_axis;        ///< Absent: that of the velocities at the start.
+  std::optional<Vec3> spin_through;     ///< A point of the axis [m]; absent: likewise, or origin.
+  std::string spin_ground = "stands";   ///< stands | turns.
+  std::optional<TurningFrame> turning;  ///< Statics in this frame; set for modes about a spin.
+  double checkpoint_every = 0.0;        ///< Wall-clock seconds; 0: only at the end.
   SourceLocation place;
 };
 

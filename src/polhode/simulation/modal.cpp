@@ -5,6 +5,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/simulation/modal.hpp>
+#include <polhode/statics/turning_model.hpp>
 
 namespace polhode {
 
@@ -17,6 +18,10 @@ constexpr double kUnbalanced = 1e-6;
 /// below which it is rounding.
 constexpr double kStays = 1e-9;
 
+/// Difference of velocities from those of one rotation, relative to the largest, below which it is
+/// rounding of what a user writes.
+constexpr double kTogether = 1e-6;
+
 /// Angular velocities of the bodies of the system at the start, in body axes; empty without
 /// rotation. @throws InputError if there is any motion other than rotation about a body's own
 /// centre of mass.
@@ -26,7 +31,7 @@ std::vector<Vec3> steady_spin(const Model& model) {
         (solid.angular_velocity && !solid.angular_velocity->isZero(0.0)))
       throw InputError(format("solids.{}", solid.name),
                        "has a velocity, but modes need a state of rest",
-                       "Leave it out; bodies and beams may turn about their axes");
+                       "Leave it out, or ask for modes about a steady spin (analysis.spin)");
   const bool any = std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodySpec& b) {
     return !b.velocity.isZero(0.0) || !b.angular_velocity.isZero(0.0);
   });
@@ -55,9 +60,64 @@ std::vector<Vec3> steady_spin(const Model& model) {
                      format("rotates with body '{}', but modes contain the gyroscopic and "
                             "centrifugal forces of bodies and beams only",
                             system.bodies()[b].name),
-                     "Describe it as a rigid body or as beams, or leave the angular velocity out");
+                     "Ask for modes about a steady spin (analysis.spin), or leave the angular "
+                     "velocity out");
   }
   return spin;
+}
+
+/// Rotation of a model whose axis is not given: that of all its parts at the start.
+/// @throws InputError if there is none.
+TurningFrame frame_of_velocities(const Model& model) {
+  const System system = build_system(model, nullptr);
+  const State state = system.initial_state();
+  BodyMotion fastest;
+  for (int b = 0; b < system.body_count(); ++b)
+    if (const BodyMotion m = system.motion(state, b);
+        !system.bodies()[b].point_mass && m.W.norm() > fastest.W.norm())
+      fastest = m;
+  if (fastest.W.isZero(0.0))
+    throw InputError("analysis.spin_axis", "is missing, and no body turns at the start",
+                     "Give the axis, such as spin_axis: z");
+  const Vec3 omega = fastest.q * fastest.W;
+  TurningFrame frame;
+  frame.axis = omega.normalized();
+  frame.through = model.analysis.spin_through.value_or(fastest.r + omega.cross(fastest.v) /
+                                                                       omega.squaredNorm());
+  const double rounding = kTogether * system.length_scale() * omega.norm();
+  const auto refuse = [](const std::string& where) {
+    throw InputError(where, "does not turn with the others about one axis at the start",
+                     "Give it their rotation, or give spin_axis: then everything turns about it");
+  };
+  const auto expected = [&](const Vec3& x) -> Vec3 { return omega.cross(x - frame.through); };
+  for (int b = 0; b < system.body_count(); ++b) {
+    const BodyMotion m = system.motion(state, b);
+    if ((m.v - expected(m.r)).norm() > rounding ||
+        (!system.bodies()[b].point_mass && (m.q * m.W - omega).norm() > kTogether * omega.norm()))
+      refuse(format("bodies.{}", system.bodies()[b].name));
+  }
+  const Nodes& nodes = system.nodes();
+  for (int i = 0; i < nodes.count(); ++i)
+    if (const NodePlace place = nodes.place_of(i);
+        place.group >= 0 && !nodes.bonded(i) &&
+        (nodes[i].velocity - expected(nodes[i].position)).norm() > rounding)
+      refuse(nodes.group(place.group).name());
+  return frame;
+}
+
+/// Frame of the steady spin of analysis.spin.
+/// @throws InputError if the axis is not known.
+TurningFrame turning_frame(const Model& model) {
+  const AnalysisSpec& analysis = model.analysis;
+  TurningFrame frame;
+  if (analysis.spin_axis) {
+    frame.axis = analysis.spin_axis->normalized();
+    frame.through = analysis.spin_through.value_or(Vec3::Zero());
+  } else {
+    frame = frame_of_velocities(model);
+  }
+  frame.ground_turns = analysis.spin_ground == "turns";
+  return frame;
 }
 
 /// Copy of the model at rest, for statics.
@@ -65,6 +125,7 @@ Model static_model(Model model) {
   model.analysis.type = "statics";
   for (BodySpec& body : model.bodies) body.velocity = body.angular_velocity = Vec3::Zero();
   for (BeamSpec& beam : model.beams) beam.velocity = beam.angular_velocity = Vec3::Zero();
+  for (SolidSpec& solid : model.solids) solid.velocity = solid.angular_velocity = std::nullopt;
   return model;
 }
 
@@ -75,10 +136,20 @@ ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
   const AnalysisSpec analysis = model.analysis;
   ModeOptions options;
   options.count = analysis.count;
-  options.spin = steady_spin(model);
+  if (analysis.spin.size() > 1)
+    throw InputError("analysis.spin", format("has {} speeds", analysis.spin.size()),
+                     "Give one, or call polhode modes or polhode.spin_modes, which take them all");
+  if (analysis.spin.empty()) {
+    options.spin = steady_spin(model);
+  } else {
+    options.frame = turning_frame(model);
+    options.frame->speed = analysis.spin.front();
+    model.analysis.turning = options.frame;
+  }
   simulation_ = std::make_unique<Simulation>(static_model(std::move(model)));
   (void)build_system(simulation_->model(), &map_);
   State state = simulation_->state();
+  if (options.frame) check_turning(simulation_->system(), state, *options.frame);
   if (analysis.about == "start") {
     // Multipliers that balance the loads with the model at rest.
     const InstantSolution now = InstantSolver(simulation_->system()).accelerations(state);
@@ -92,7 +163,7 @@ ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
     message_ = "Stopped before modes were computed. Allow more time, or ask for fewer modes";
   if (message_.empty()) {
     report_ = find_modes(simulation_->system(), state, options);
-    if (report_.unbalanced > kUnbalanced)
+    if (analysis.about == "start" && report_.unbalanced > kUnbalanced)
       report_.warnings.push_back(format(
           "the start is no equilibrium: {:.2g} of the largest force is unbalanced; use about: "
           "equilibrium",
@@ -100,6 +171,19 @@ ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
   }
   wall_time_ = wall_clock() - wall;
   cpu_time_ = cpu_clock() - cpu;
+}
+
+std::vector<ModalAnalysis> spin_analyses(const Model& model, const std::atomic<bool>* stop) {
+  if (model.analysis.spin.empty())
+    throw InputError("analysis.spin", "is missing", "Give the speed of the spin");
+  std::vector<ModalAnalysis> list;
+  for (const double speed : model.analysis.spin) {
+    Model at = model;
+    at.analysis.spin = {speed};
+    list.emplace_back(std::move(at), stop);
+    if (!list.back().converged()) break;
+  }
+  return list;
 }
 
 Vec6 ModalAnalysis::body_shape(int mode, int body, bool imaginary) const {

@@ -15,7 +15,8 @@ namespace polhode {
 
 /// Natural frequencies and shapes of a model about the static equilibrium found from its start, or
 /// about the start itself (analysis.about). Bodies and beams may rotate steadily about axes through
-/// their centres of mass: rotors, with gyroscopic moments.
+/// their centres of mass: rotors, with gyroscopic moments. Or everything spins steadily about one
+/// axis (analysis.spin, one speed): modes are seen from the frame that turns with it.
 class ModalAnalysis {
  public:
   /// @throws InputError if the model cannot be built or its start not assembled, or if a centre of
@@ -30,6 +31,11 @@ class ModalAnalysis {
   /// Simulation at the equilibrium.
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] const ModesReport& report() const { return report_; }
+  /// Speed of the steady spin in whose frame modes are seen [rad/s]; 0 without one.
+  [[nodiscard]] double spin() const {
+    const std::vector<double>& speeds = model().analysis.spin;
+    return speeds.empty() ? 0.0 : speeds.front();
+  }
   /// Motion of a body of the model in a mode: displacement of its centre of mass and small
   /// rotation, world, of the mass-normalised shape; zero for fixed bodies.
   /// @param imaginary  Of the imaginary part of the shape.
@@ -46,5 +52,10 @@ class ModalAnalysis {
   std::string message_;
   double wall_time_ = 0.0, cpu_time_ = 0.0;
 };
+
+/// Modes at each speed of analysis.spin, as far as there are equilibria: the last may have none.
+/// @throws InputError as ModalAnalysis does, or if the model is not steady in the turning frame.
+[[nodiscard]] std::vector<ModalAnalysis> spin_analyses(const Model& model,
+                                                       const std::atomic<bool>* stop = nullptr);
 
 }  // namespace polhode

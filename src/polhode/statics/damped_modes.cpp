@@ -25,6 +25,9 @@ constexpr double kDampedShift = 0.3;
 constexpr double kNearZero = 1e-4, kFree = 1e-13;
 constexpr int kIterations = 4;
 constexpr double kSlows = 1e-3;  ///< Part of a free motion that damping may dissipate in that time.
+/// Part of a free motion that Coriolis forces may deflect in a time 1/σ where they are rounding: in
+/// a turning frame a motion is only apart from the others without them.
+constexpr double kDeflected = 1e-9;
 /// Size of rounding for eigenvalues of the inverse that belong to massless degrees of freedom.
 constexpr double kNoMass = 1e-15;
 /// |λ|, as a part of the shift, below which it is rounding.
@@ -90,7 +93,8 @@ Mat free_of(ModalMatrices& m, double sigma) {
     if (!moves || std::abs(x.dot(m.stiffness_times(x))) > kFree * m.energy_scale(x)) break;
     // Effect of damping, or of a gyroscopic moment, on it in a time 1/(kNearZero σ).
     const Vec y = m.inverse(m.damping_times(x));
-    if (std::sqrt(y.dot(m.mass_times(y))) * kNearZero * sigma > kSlows) break;
+    const double change = std::sqrt(y.dot(m.mass_times(y))) * sigma;
+    if (m.turns() ? change > kDeflected : change * kNearZero > kSlows) break;
     V.conservativeResize(m.unknowns(), V.cols() + 1);
     V.rightCols<1>() = x;
   }

@@ -9,6 +9,7 @@
 #include <polhode/math/hat.hpp>
 
 #include <polhode/statics/modal_matrices.hpp>
+#include <polhode/statics/turning_model.hpp>
 
 namespace polhode {
 
@@ -165,8 +166,19 @@ void ModalMatrices::put_damping(const State& state, const ModeOptions& options) 
       put_circulatory(state, options.spin);
     }
   }
-  damped_ = !integrals_.empty() ||
-            largest(damping_, n()) > kNoDamping * std::max(largest(K(), n()), 1e-300);
+  const auto above_rounding = [&] {
+    return !integrals_.empty() ||
+           largest(damping_, n()) > kNoDamping * std::max(largest(K(), n()), 1e-300);
+  };
+  dissipates_ = above_rounding();
+  if (options.frame) {
+    turns_ = options.frame->speed != 0.0;
+    SaddleMatrix coriolis(mass_);
+    put_coriolis(state, *options.frame, coriolis);
+    damping_.combine(damping_, s() * rate_, coriolis);
+    if (!options.frame->ground_turns) put_ground_damping(state, *options.frame);
+  }
+  damped_ = above_rounding();
 }
 
 /// Finds the rows whose compliance grows with the rate, after assembly with rates.
@@ -207,6 +219,57 @@ bool ModalMatrices::put_gyroscopic(const State& state, const std::vector<Vec3>& 
   }
   gyroscopic.set(values, std::vector<double>(9 * system_.nodes().mass().size(), 0.0), nullptr, 1.0);
   return any;
+}
+
+/// Sets the Coriolis terms 2Ω M S, with those of the bodies' rotations. @eq{spin-matrices}
+/// @eq{spin-body}
+void ModalMatrices::put_coriolis(const State& state, const TurningFrame& frame,
+                                 SaddleMatrix& coriolis) const {
+  linear::KktValues values = nothing();
+  const Mat3 S = hat(frame.omega());
+  for (int b = 0; b < system_.body_count(); ++b) {
+    const BodyData& body = system_.bodies()[b];
+    const Mat3 Lambda = system_.motion(state, b).Lambda();
+    const Mat3 J = Lambda * body.inertia * Lambda.transpose();
+    values.diagonal[b].topLeftCorner<3, 3>() = 2.0 * body.mass * S;
+    if (!body.point_mass)
+      values.diagonal[b].bottomRightCorner<3, 3>() = 2.0 * (S * J + J * S) - J.trace() * S;
+  }
+  const KktMap map = kkt_map(system_);
+  for (std::size_t i = 0; i < system_.interactions().size(); ++i) {
+    const InteractionRef& ref = system_.interactions()[i];
+    const Mat3 C = 2.0 * system_.traits(ref).coupled_mass * S;
+    if (C.isZero(0.0)) continue;
+    for (int body : {ref.a, ref.b})
+      if (body != kGround) values.diagonal[body].topLeftCorner<3, 3>() -= C;
+    if (map.pair[i] < 0) continue;
+    values.pairs[map.pair[i]].K_ab.topLeftCorner<3, 3>() += C;
+    values.pairs[map.pair[i]].K_ba.topLeftCorner<3, 3>() += C;
+  }
+  const std::vector<double>& mass = system_.nodes().mass();
+  std::vector<double> blocks(9 * mass.size(), 0.0);
+  for (std::size_t k = 0; k < mass.size(); ++k)
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(blocks.data() + 9 * k) =
+        2.0 * mass[k] * S;
+  coriolis.set(values, blocks, nullptr, 1.0);
+}
+
+/// Adds the stiffness Ω C S of dampers on a ground that stands. @eq{spin-ground-damping}
+void ModalMatrices::put_ground_damping(const State& state, const TurningFrame& frame) {
+  linear::KktValues values = nothing();
+  bool any = false;
+  Mat6 S = Mat6::Zero();
+  S.topLeftCorner<3, 3>() = S.bottomRightCorner<3, 3>() = hat(frame.omega());
+  for (const InteractionRef& ref : system_.interactions()) {
+    if (ref.rows > 0 || !system_.traits(ref).dissipates) continue;
+    if ((ref.a == kGround) == (ref.b == kGround)) continue;
+    any = true;
+    values.diagonal[ref.a == kGround ? ref.b : ref.a] += damping_on_ground(system_, state, ref) * S;
+  }
+  if (!any) return;
+  SaddleMatrix more(mass_);
+  more.set(values, std::vector<double>(9 * system_.nodes().mass().size(), 0.0), nullptr, 1.0);
+  K().combine(K(), s(), more);
 }
 
 /// Adds the circulatory stiffness. Forces of dampers that rotate with their bodies also depend on

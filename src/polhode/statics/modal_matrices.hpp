@@ -50,6 +50,10 @@ class ModalMatrices {
   [[nodiscard]] std::vector<int> counted() const;
   /// Whether forces depend on velocities.
   [[nodiscard]] bool damped() const { return damped_; }
+  /// Whether they do so other than by Coriolis forces and gyroscopic moments.
+  [[nodiscard]] bool dissipates() const { return dissipates_; }
+  /// Whether the model is seen from a turning frame.
+  [[nodiscard]] bool turns() const { return turns_; }
   /// Asymmetry of the stiffness, before its symmetric part is taken.
   [[nodiscard]] double asymmetry() const { return asymmetry_; }
 
@@ -92,6 +96,8 @@ class ModalMatrices {
   void put_springs_for_compliant_rows();
   [[nodiscard]] bool put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
                                     SaddleMatrix& gyroscopic) const;
+  void put_coriolis(const State& state, const TurningFrame& frame, SaddleMatrix& coriolis) const;
+  void put_ground_damping(const State& state, const TurningFrame& frame);
   void put_circulatory(const State& state, const std::vector<Vec3>& spin);
   [[nodiscard]] linear::KktValues nothing() const;
   [[nodiscard]] Vec times(const SaddleMatrix& A, double factor, const Vec& x) const;
@@ -103,7 +109,7 @@ class ModalMatrices {
   StaticNewton newton_;
   SaddleMatrix mass_, damping_, shifted_;  ///< damping_ is scaled by s() and rate_.
   double rate_ = 1.0, asymmetry_ = 0.0;
-  bool damped_ = false;
+  bool damped_ = false, dissipates_ = false, turns_ = false;
   Mat turned_, K_turned_, M_turned_;  ///< V, K V and M V; no columns: none.
   Mat P_K_turned_;                    ///< (K + σC + σ²M)⁻¹ K V after factor_quadratic().
   Eigen::PartialPivLU<Mat> left_;     ///< 1 − (M V)ᵀ of that.

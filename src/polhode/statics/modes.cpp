@@ -12,6 +12,7 @@
 #include <polhode/statics/follower_loads.hpp>
 #include <polhode/statics/modal_matrices.hpp>
 #include <polhode/statics/modes.hpp>
+#include <polhode/statics/turning_model.hpp>
 #include <polhode/statics/undamped_modes.hpp>
 #include <polhode/stepping/plain_motions.hpp>
 
@@ -318,7 +319,8 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   std::vector<FollowerLoad> followers;
   if (report.asymmetry > kSymmetricPencil)
     followers = follower_loads(system, equilibrium, options.load_factor);
-  m.let_turn(equilibrium, followers, options.load_factor);
+  // In a turning frame Coriolis forces couple rigid motions with others.
+  if (!options.frame) m.let_turn(equilibrium, followers, options.load_factor);
   for (const FollowerLoad& load : followers)
     report.warnings.push_back(
         format("{} acts here with {:.4g} N and has no potential, as it follows its body or is a "
@@ -332,6 +334,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
     if (!std::isfinite(std::abs(mode.eigenvalue)))
       throw SolveError("modes: a frequency is not a finite number",
                        "Look for a mass, inertia or stiffness that is far too small or too large");
+  if (options.frame) find_whirl(system, equilibrium, *options.frame, m, modes);
   name_free(system, equilibrium, m, modes);
   for (Mode& mode : modes)
     if (mode.rigid) mode.motion += loads_that_turn(system, followers, mode.shape);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <polhode/dynamics/turning_frame.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -16,6 +18,9 @@ struct ModeOptions {
   /// By body: steady angular velocity in body axes, about which vibrations are computed [rad/s].
   /// Empty: nothing rotates.
   std::vector<Vec3> spin = {};
+  /// Frame in which the model is at rest and the modes are seen; the system has its centrifugal
+  /// forces.
+  std::optional<TurningFrame> frame = {};
 };
 
 /// Behaviour of a motion exp(λt).
@@ -29,6 +34,16 @@ enum class ModeKind {
 /// "oscillation", ...
 [[nodiscard]] const char* kind_name(ModeKind kind);
 
+/// Sense of a motion in the world about the axis of a steady spin.
+enum class Whirl {
+  unknown,  ///< Neither of the others alone, or no resultant.
+  none,     ///< Along the axis or about it, or nothing turns.
+  forward,  ///< Around the axis, in the sense of the spin.
+  backward
+};
+/// "unknown", ...
+[[nodiscard]] const char* whirl_name(Whirl whirl);
+
 /// A free vibration about an equilibrium: the motion Re((shape + i shape_imag) exp(λt)).
 struct Mode {
   std::complex<double> eigenvalue;  ///< λ, of a conjugate pair the one with Im λ ≥ 0 [rad/s].
@@ -36,8 +51,11 @@ struct Mode {
   double frequency = 0.0;  ///< |λ|/2π [Hz]; without damping the frequency of the oscillation.
   double damping = 0.0;  ///< −Re λ/|λ| [-]: the damping ratio; negative: grows; of free motions 0.
   double omega_squared = 0.0;  ///< |λ|² [rad²/s²], negative of divergence.
-  bool rigid = false;          ///< The kind is free.
-  std::string motion;          ///< Of a free motion: "body 'bob' turns about z".
+  Whirl whirl = Whirl::unknown;
+  /// Frequency in the world [Hz], where the whirl is known; `frequency` is that in the frame.
+  std::optional<double> world_frequency;
+  bool rigid = false;  ///< The kind is free.
+  std::string motion;  ///< Of a free motion: "body 'bob' turns about z".
   Vec shape;  ///< (Δr, Δθ) by body, then the unknowns of nodes; mass-normalised, φᴴMφ = 1.
   Vec shape_imag;  ///< A quarter of a period later, with the other sign; empty: zero.
   Vec3 participation = Vec3::Zero();   ///< Size of φᵀM e for translation along x, y, z [√kg].
@@ -69,6 +87,9 @@ struct ModesReport {
 /// or, with follower forces, damping or rotating bodies,
 ///
 ///   λ² M φ + λ C φ + K φ − Gᵀμ = 0,   G φ = 0   @eq{modes-damped}
+///
+/// In a turning frame C has the Coriolis forces and K those of the centrifugal ones.
+/// @eq{spin-matrices}
 ///
 /// K is the tangent of statics with its geometric terms and those of the multipliers. Few unknowns
 /// are solved densely, many by Lanczos or Arnoldi iterations on the inverse of the shifted saddle

@@ -20,7 +20,65 @@ void check_type(Section& section, const std::string& type) {
   if (type == "dynamics") refuse("load_steps", "type statics or modes");
   if (type != "statics") refuse("history", "type statics");
   if (type != "modes")
-    for (const char* key : {"count", "about"}) refuse(key, "type modes");
+    for (const char* key : {"count", "about", "spin", "spin_axis", "spin_through", "spin_ground"})
+      refuse(key, "type modes");
+}
+
+/// Largest number of speeds of a range.
+constexpr double kMostSpeeds = 10000.0;
+
+/// Reads first:last:step, with one unit behind them or one each; the end is included to rounding.
+std::optional<std::vector<double>> read_range(ReadContext& context, const SourceNode& node,
+                                              const std::string& path, const Field& field) {
+  std::vector<std::string> parts{""};
+  for (const char c : node.text)
+    if (c == ':')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  const auto refuse = [&](const std::string& what) {
+    context.fault(node, path, what,
+                  "Write first:last:step with a step that leads from first to last, such as "
+                  "0:300:50 rad/s.");
+    return std::nullopt;
+  };
+  if (parts.size() != 3)
+    return refuse(format("expects three parts between colons, but {} has {}", quote(node.text),
+                         parts.size()));
+  // The unit behind the last number is that of all without one.
+  const std::size_t unit = parts[2].find_first_not_of("0123456789.+-eE ");
+  std::vector<double> values;
+  for (std::size_t k = 0; k < 3; ++k) {
+    SourceNode part = node;
+    part.text = parts[k];
+    if (k < 2 && unit != std::string::npos &&
+        parts[k].find_first_not_of("0123456789.+-eE ") == std::string::npos)
+      part.text += " " + parts[2].substr(unit);
+    const auto value = read_number(context, part, path, field);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  const double count = (values[1] - values[0]) / values[2];
+  if (!(count >= 0.0 && count < kMostSpeeds))
+    return refuse(format("{} has no end, or more than {:g} speeds", quote(node.text), kMostSpeeds));
+  std::vector<double> speeds;
+  for (int k = 0; k <= static_cast<int>(count + 1e-9); ++k)
+    speeds.push_back(values[0] + k * values[2]);
+  return speeds;
+}
+
+void read_spin(ReadContext& context, Section& section, AnalysisSpec& analysis) {
+  const SourceNode* node = section.find("spin");
+  if (!node) {
+    for (const char* key : {"spin_axis", "spin_through", "spin_ground"})
+      if (section.has(key)) section.fault(key, "belongs to a spin", "Give the speed as spin.");
+    return;
+  }
+  const bool range = node->is_text() && node->text.find(':') != std::string::npos;
+  if (auto speeds =
+          range ? read_range(context, *node, section.path("spin"), analysis_fields().at("spin"))
+                : section.number_list("spin"))
+    analysis.spin = std::move(*speeds);
 }
 
 }  // namespace
@@ -30,7 +88,8 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
   analysis.place = place;
   Section section(context, node, place, "analysis", analysis_fields());
   if (!node.is_map()) return;
-  section.read_into(analysis);
+  section.read_into(analysis, {"spin"});
+  read_spin(context, section, analysis);
   check_type(section, analysis.type);
   if (analysis.step && analysis.tolerance)
     section.fault("tolerance",

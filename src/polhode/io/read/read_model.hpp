@@ -26,4 +26,15 @@ using Overrides = std::vector<std::string>;
 [[nodiscard]] Model read_model_text(std::string text, const std::string& filename,
                                     const Overrides& overrides = {});
 
+/// Spin of an analysis of modes, written as in a model file: spin_axis and others may be left out.
+struct SpinText {
+  std::string spin, axis, through, ground;  ///< JSON or a bare text; empty: left out.
+  [[nodiscard]] bool empty() const {
+    return spin.empty() && axis.empty() && through.empty() && ground.empty();
+  }
+};
+
+/// Replaces what is given of the spin of a model. @throws ModelErrors if it cannot be read.
+void set_spin(const SpinText& text, AnalysisSpec& analysis);
+
 }  // namespace polhode::io
