@@ -29,7 +29,7 @@ std::string campbell_table(const std::vector<ModalAnalysis>& analyses) {
 
 /// Curves by the number of the mode in the frame, and by the whirl in the world.
 std::string campbell_picture(const std::vector<ModalAnalysis>& analyses) {
-  constexpr double kPictureWidth = 720.0, kPanelHeight = 300.0, kMargin = 84.0;
+  constexpr double kPictureWidth = 720.0, kPanelHeight = 300.0, kCampbellMargin = 84.0;
   constexpr double kFirst = 34.0, kNext = 370.0;
   const double begin = analyses.front().spin(), end = analyses.back().spin();
   const double low = std::min(begin, end), high = std::max(begin, end);
@@ -43,7 +43,7 @@ std::string campbell_picture(const std::vector<ModalAnalysis>& analyses) {
       top = std::max({top, m.frequency, m.world_frequency.value_or(0.0)});
   }
   const auto panel_at = [&](double y, const char* title) {
-    return SvgPanel({kMargin, y, kPictureWidth - 2.0 * kMargin, kPanelHeight}, low,
+    return SvgPanel({kCampbellMargin, y, kPictureWidth - 2.0 * kCampbellMargin, kPanelHeight}, low,
                     high > low ? high : low + 1.0, 0.0, top > 0.0 ? 1.06 * top : 1.0, title);
   };
   SvgPanel turning = panel_at(kFirst, "in the turning frame [Hz]");
@@ -77,7 +77,7 @@ std::string campbell_picture(const std::vector<ModalAnalysis>& analyses) {
   }
   std::string content = turning.text() + world.text();
   for (const double y : {kFirst, kFirst + kNext})
-    content += svg_text(kMargin + 200.0, y + kPanelHeight + 34.0, "spin [rad/s]");
+    content += svg_text(kCampbellMargin + 200.0, y + kPanelHeight + 34.0, "spin [rad/s]");
   content += svg_text(kPictureWidth - 300.0, kFirst + kNext - 10.0,
                       "blue forward, red backward, grey on the axis");
   return svg_page(kPictureWidth, kFirst + 2.0 * kNext, content);
