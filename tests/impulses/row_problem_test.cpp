@@ -88,7 +88,9 @@ void expect_solved(const RowProblem& q, const Vec& p) {
       EXPECT_LE(used, bound + impulse / block.half_axes.head(block.size).minCoeff());
       if (slip.norm() <= scale) continue;
       EXPECT_NEAR(used, bound, 1e-9 * (1.0 + bound));
-      if (t.norm() > impulse) EXPECT_NEAR(t.dot(slip), -t.norm() * slip.norm(), 1e-9 * t.norm());
+      if (t.norm() > impulse) {
+        EXPECT_NEAR(t.dot(slip), -t.norm() * slip.norm(), 1e-9 * t.norm());
+      }
     }
   }
 }
