@@ -100,3 +100,12 @@ def test_inverse_dynamics_of_a_pendulum() -> None:
     assert np.abs(moment[:, [0, 2]]).max() < 1e-8
     with pytest.raises(polhode.ModelError, match="unknown joint 'hinges'"):
         polhode.inverse_dynamics(m, t, {"hinges": angle})
+
+
+@pytest.mark.parametrize("spin", [0.1, 10.0, 1000.0])
+def test_modes_about_a_spin_of_a_free_body_have_eulers_nutation(spin: float) -> None:
+    m = polhode.Model()
+    m.add_body("a", mass=1, inertia=[2, 3, 4])
+    (modes,) = polhode.spin_modes(m, spin, axis="z")
+    nutation = spin * np.sqrt((4 - 2) * (4 - 3) / (2 * 3)) / (2 * np.pi)  # of Ω along the axis of C, in the body
+    assert min(abs(mode.frequency - nutation) for mode in modes) < 1e-7 * spin
