@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <polhode/impulses/row_problem.hpp>
 #include <polhode/stepping/impact_rows.hpp>
@@ -84,10 +85,14 @@ bool ImpactResolver::sweep(std::vector<Row>& rows, Acts acts, std::vector<Vec6>&
 /// and by the cones, and they are as small as possible where rows share a load.
 /// @eq{impact-friction} @eq{row-problem}
 void ImpactResolver::solve_rows(std::vector<Row>& rows, std::vector<Vec6>& v, Acts acts) {
-  // Points of surfaces and cables do not tell the friction of the step: their cones count it twice,
-  // and sweeps that end early stop less of a slip than the solution would.
-  const auto of_surface = [&](const Row& row) { return surface(row.impact) != nullptr; };
-  if (std::any_of(rows.begin(), rows.end(), of_surface)) {
+  // Sweeps that end early stop less of the slip of a cable than the solution would: see the page of
+  // numerical choices.
+  const auto of_cable = [&](const Row& row) {
+    return surface(row.impact) != nullptr &&
+           system_->nodes().group(of_surface(row.impact).number).kind().find("cable") !=
+               std::string::npos;
+  };
+  if (std::any_of(rows.begin(), rows.end(), of_cable)) {
     sweep(rows, acts, v);
     return;
   }
