@@ -30,8 +30,7 @@ constexpr double kProgress = 0.9;
 constexpr LineSearchRule kHalveRows{0.0, 8, 0.5, 0.5, 0.5};
 /// Number of previous iterates whose merit must not be exceeded; it may rise above the last one.
 constexpr std::size_t kLookBack = 5;
-/// First parts ε of the diagonal of A that proximal iterations add to it: the usual one, and that
-/// of searches that follow one that failed.
+/// Initial proximal parameters ε, parts of the diagonal of A: of the first search and of restarts.
 constexpr std::array kProximalParts{1e-3, 1e-1};
 /// Factor of that part after an iteration that leaves more than this of the error, and the part at
 /// which they end: below the rounding of velocities.

@@ -12,17 +12,17 @@ struct ImpulseRows {
   enum class Kind {
     equality,  ///< y = 0, one row: of a joint.
     normal,    ///< 0 ≤ p ⊥ y ≥ 0, one row: of a contact point or a stop.
-    /// One to three rows in one cone: |p| at most its bound, y = 0 where it is less, y against p
-    /// where it is reached: Coulomb's friction in two directions, torsion in one, rolling in two.
+    /// One to three rows of a friction cone: |p| at most its bound; y = 0 inside the cone, y
+    /// against p on it. Coulomb friction and rolling have two rows, torsion has one.
     friction
   };
   Kind kind = Kind::normal;
   Eigen::Index first = 0;    ///< Number of the first row.
   Eigen::Index size = 1;     ///< Number of rows.
-  Eigen::Index normal = -1;  ///< Of friction: row of the normal impulse; −1: none.
-  /// Of friction: half axes of the cone's section by the normal impulse, μ [-] or a length [m].
+  Eigen::Index normal = -1;  ///< Row of a friction cone's normal impulse; −1: none.
+  /// Half axes of the friction cone's section per unit normal impulse, μ [-] or a length [m].
   Vec3 half_axes = Vec3::Zero();
-  double carried = 0.0;  ///< Of friction: normal impulse besides that of the row [N s].
+  double carried = 0.0;  ///< Normal impulse of the friction cone besides that of the row [N s].
 };
 
 /// Result of a row problem.

@@ -87,7 +87,7 @@ void VectorDamper::evaluate(const PairStep& step, PairTerms& t) const {
     };
     const double af = b.alpha_f;
     const Mat3 I = Mat3::Identity(), none = Mat3::Zero();
-    // Of the common place, of the arms and of the velocity, by the motions of a and b.
+    // Derivatives of the common point, the arms and the velocity by the motions of a and b.
     const BodyStep& owner = on_b_ ? b : a;
     const Block place = af * of(I, -hat(owner.vector(on_b_ ? Z_b_ : Z_a_).at_n1));
     const Block shift = af * of(I, none);

@@ -65,7 +65,7 @@ struct StepRates {
   double at_n = 0.0, at_alpha = 0.0;  ///< [m/s or rad/s]
   double alpha_f = 1.0, dt = 0.0;
 
-  /// Of the mean motion of the step.
+  /// Rate at t_{n+1} of the mean motion of the step.
   [[nodiscard]] double at_n1() const { return at_n + (at_alpha - at_n) / alpha_f; }
 };
 

@@ -15,7 +15,7 @@ struct FollowerLoad {
   double force = 0.0;    ///< Largest force, or moment per size of the model [N].
   int interaction = -1;  ///< −1: a load on a solid.
 
-  /// Of a load on bodies: its stiffness by (r, θ) of a and b, with the symmetric form of moments.
+  /// Stiffness of a load on bodies by (r, θ) of a and b, with the symmetric form of moments.
   using Stiffness = Eigen::Matrix<double, 12, 12>;
   Stiffness stiffness = Stiffness::Zero();
   /// Change of its force and moment by a motion of a and b, which the half moments of that form are

@@ -163,7 +163,7 @@ void StaticNewton::name_open(const Vec& rhs, const Vec& sizes, RowGap& found) co
     Eigen::Index largest = 0;
     open.cwiseAbs().maxCoeff(&largest);
     found.open = {i, 0.0, 0.0, lengths_[ref.first_row + largest] != 0};
-    double square = 0.0;  // of its part in the combination that does not vanish
+    double square = 0.0;  // square of the part in the combination that does not vanish
     for (int row = ref.first_row; row < ref.first_row + ref.rows; ++row)
       if (sizes[row] > 0.0 && (lengths_[row] != 0) == found.open.length)
         square += std::pow(rhs[6 * system_->body_count() + row] / sizes[row], 2);

@@ -85,8 +85,8 @@ bool ImpactResolver::sweep(std::vector<Row>& rows, Acts acts, std::vector<Vec6>&
 /// and by the cones, and they are as small as possible where rows share a load.
 /// @eq{impact-friction} @eq{row-problem}
 void ImpactResolver::solve_rows(std::vector<Row>& rows, std::vector<Vec6>& v, Acts acts) {
-  // Sweeps that end early stop less of the slip of a cable than the solution would: see the page of
-  // numerical choices.
+  // Sweeps for cables: with the converged solution a rope that slips over a drum is slowed too
+  // little. See docs/reference/numerics.md.
   const auto of_cable = [&](const Row& row) {
     return surface(row.impact) != nullptr &&
            system_->nodes().group(of_surface(row.impact).number).kind().find("cable") !=
