@@ -137,8 +137,9 @@ void TreeEngine::lay_out() {
     extra_index_[x.interaction] = i;
     if (x.in_lanes) continue;
     loops_outside_ = loops_outside_ || x.rows > 0;
-    rates_ = rates_ || x.rows == 0;
     const InteractionRef& ref = system_->interactions()[x.interaction];
+    // Exact rows alone are functions of the configuration; forces beside them are of rates, too.
+    rates_ = rates_ || system_->traits(ref).works;
     for (int body : {ref.a, ref.b})
       if (body != kGround) touched_.push_back(body);
   }

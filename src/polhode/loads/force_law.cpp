@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/dynamics/load_step.hpp>
 #include <polhode/loads/force_law.hpp>
 #include <polhode/math/gauss_rule.hpp>
@@ -20,10 +22,8 @@ constexpr double kShort = 1e-6;
 /// Displacement, as a part of x, below which the mean of V' replaces the quotient of V.
 constexpr double kShortWay = 1e-4;
 
-/// Largest rate at which jumps are looked for [m/s or rad/s], and their number above which steps
-/// are a curve.
+/// Largest rate at which jumps are looked for [m/s or rad/s].
 constexpr double kFastest = 0x1p20;
-constexpr std::size_t kMostJumps = 64;
 /// Distance from a jump, as a part of the rate, at which its limits are taken.
 constexpr double kBesideJump = 0x1p-40;
 /// Rounding of a multiplier that has its bound, as a part of the jump.
@@ -174,12 +174,12 @@ std::vector<LawJump> jumps_of(const TimeFunction& law) {
   for (TimeBreak b = law.next_break(-kFastest, kFastest); b.exists();
        b = law.next_break(b.t, kFastest)) {
     if (b.derivative != 0) continue;
-    if (list.size() == kMostJumps) return {};
     const double near = near_jump(b.t), below = law(b.t - near), above = law(b.t + near);
     LawJump jump{b.t, above - below, 0.5 * (above - below)};
     // Bodies at rest are not moved by a resistance.
     if (std::abs(b.t) <= near && below <= 0.0 && above >= 0.0) jump = {0.0, jump.size, -below};
     list.push_back(jump);
+    if (list.size() > kMostJumps) break;
   }
   return list;
 }
@@ -188,6 +188,10 @@ ResistanceLaw::ResistanceLaw(const LoadDescription& load, const std::string& law
     : c_(load.value("damping", 0.0)), f_(load.law(law)) {
   if (!f_ || load.at_rest) return;
   jumps_ = jumps_of(*f_);
+  if (jumps_.size() > kMostJumps)
+    throw InputError(format("loads.{}.{}", load.name, law),
+                     format("jumps at more than {} rates, which are not followed", kMostJumps),
+                     "Give a law with fewer jumps, or one that rises over a range of rates");
   for (const LawJump& jump : jumps_) (jump.size > 0.0 ? rows_ : drops_).push_back(jump);
   if (rows_.size() <= static_cast<std::size_t>(kMaxRows)) return;
   // Those nearest to rest hold.

@@ -57,7 +57,10 @@ struct LawJump {
 /// two limits the rate is that of the jump to this width.
 inline constexpr double kJumpWidth = 1e-9;
 
-/// Jumps of a law of a rate, by rising rate; none if there are so many that it is a curve.
+/// Largest number of jumps of a law of a rate.
+inline constexpr std::size_t kMostJumps = 64;
+
+/// Jumps of a law of a rate, by rising rate; one more than kMostJumps if there are more.
 [[nodiscard]] std::vector<LawJump> jumps_of(const TimeFunction& law);
 
 /// Rate of a coordinate over a step, or at an instant, where dt is zero.
@@ -80,6 +83,7 @@ class ResistanceLaw {
  public:
   ResistanceLaw() = default;
   /// @param load  Value damping, and a law of this name.
+  /// @throws InputError if the law has more than kMostJumps jumps.
   ResistanceLaw(const LoadDescription& load, const std::string& law);
 
   [[nodiscard]] bool is_zero() const { return c_ == 0.0 && !f_; }

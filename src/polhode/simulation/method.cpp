@@ -110,12 +110,8 @@ bool has_elastic_pairs(const System& system) {
 std::unique_ptr<NewtonEngine> choose_engine(const System& system, const AnalysisSpec& a,
                                             MomentumRate rate, JacobianPolicy policy,
                                             std::string& narration) {
-  const bool jumps = system.set_valued();
-  if (a.solver == "tree" && jumps)
-    throw InputError("analysis.solver", "'tree' does not support laws that jump with a rate",
-                     "Use solver: automatic, block_lu, klu or sparse_lu");
   const bool tree_fits = rate == MomentumRate::momentum && policy != JacobianPolicy::every_step &&
-                         policy != JacobianPolicy::never && !jumps;
+                         policy != JacobianPolicy::never;
   if (a.solver == "tree" && !tree_fits)
     throw InputError(
         "analysis.solver",
@@ -152,9 +148,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   if (solids || system.contacts() || given)
     return std::make_unique<SparseEngine>(system, solver, rate, factor);
   if (!tree_fits) {
-    narration += jumps ? "Solver: block LU, as a law jumps with a rate.\n"
-                       : "Solver: block LU, as 'tree' does not support this momentum_rate or "
-                         "jacobian.\n";
+    narration += "Solver: block LU, as 'tree' does not support this momentum_rate or jacobian.\n";
     return std::make_unique<SparseEngine>(system, solver, rate);
   }
   auto tree = std::make_unique<TreeEngine>(system, a.isa);
