@@ -92,6 +92,12 @@ std::string results_path(const std::string& path) {
   return fs::is_directory(path, ignored) ? path + "/" + io::results::kFileName : path;
 }
 
+io::ResultsReader open_results(const std::string& path) {
+  io::ResultsReader results(path);
+  if (results.cut_short()) say("warning: " + results.cut_text());
+  return results;
+}
+
 SceneData scene_of(const ViewRequest& request) {
   SceneOptions options;
   options.max_frames = request.frames;
@@ -100,7 +106,7 @@ SceneData scene_of(const ViewRequest& request) {
   if (!request.compared.empty()) options.max_bytes /= 2;
   if (!is_results(request.input.file)) return scene_of_model(request, options);
   const std::string path = results_path(request.input.file);
-  const io::ResultsReader results(path);
+  const io::ResultsReader results = open_results(path);
   std::optional<Model> model;
   try {
     model = model_of_results(results, fs::absolute(path).parent_path().string());

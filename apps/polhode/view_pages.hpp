@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <polhode/io/results/results_reader.hpp>
 #include <polhode/view/scene.hpp>
 
 #include "console.hpp"
@@ -22,6 +23,8 @@ struct ViewRequest {
 [[nodiscard]] bool is_results(const std::string& path);
 /// Path of the results file; for a folder its results.h5.
 [[nodiscard]] std::string results_path(const std::string& path);
+/// Reader of such a file; warns of one that is cut short. @throws FileError
+[[nodiscard]] io::ResultsReader open_results(const std::string& path);
 
 /// Scene of results, or of a model at its assembled start with its mobility and redundant joints.
 /// @throws FileError, ModelErrors, InputError

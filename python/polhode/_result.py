@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Optional, Union
 
@@ -194,6 +195,11 @@ class Result:
             figures["trusted"] = trusted == "yes"
             figures["distrust"] = str(self._store.attribute("/provenance", "distrust") or "").splitlines()
         return figures
+
+    @property
+    def cut_short(self) -> bool:
+        """Whether the file is cut short, by an interrupted copy or a full disk: its complete frames are read."""
+        return bool(self._store.cut_text)
 
     @property
     def end(self) -> str:
@@ -440,7 +446,11 @@ def _components(shape: "tuple[int, ...]") -> "list[str]":
 def open(path: "Union[str, os.PathLike[str]]") -> Result:
     """The results in a file results.h5, or in the folder of a run. Raises OSError if there are none.
 
-    Data sets are read at first use. The run may still be in progress.
+    Data sets are read at first use. The run may still be in progress. A file that is cut short is read up to its last
+    complete frame, with a warning; `Result.cut_short` says so.
     """
     name = os.fspath(path)
-    return Result(FileStore(os.path.join(name, "results.h5") if os.path.isdir(name) else name))
+    store = FileStore(os.path.join(name, "results.h5") if os.path.isdir(name) else name)
+    if store.cut_text:
+        warnings.warn(store.cut_text, stacklevel=2)
+    return Result(store)

@@ -21,6 +21,8 @@ def read_only(array: Any) -> Any:
 class MemoryStore:
     """Channels in memory of the engine; views share this memory."""
 
+    cut_text = ""
+
     def __init__(self, channels: "dict[str, Any]", views: "dict[str, Any]", fixed: "dict[str, Any]",
                  probes: "Optional[dict[str, Any]]" = None) -> None:
         self.channels, self.views, self.fixed, self._probes = channels, views, fixed, probes or {}
@@ -70,6 +72,7 @@ class FileStore:
         if version > known:
             raise OSError(f"{file}: has format version {version:g}, and this program reads versions up to {known}. "
                           "Use the version of Polhode that wrote it, or a later one.")
+        self.cut_text = self._reader.cut_text()  # a warning; empty for a whole file
         self._paths = self._reader.paths()
         self._known = set(self._paths)
         self._kept: "dict[str, Any]" = {}

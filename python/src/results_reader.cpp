@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/checksums.hpp>
 #include <polhode/io/results/hdf5_id.hpp>
 #include <polhode/io/results/results_format.hpp>
+#include <polhode/io/results/results_reader.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 #include "parts.hpp"
@@ -32,7 +34,11 @@ class Handle {
 /// Reads data sets of a results file, also while a run still writes it.
 class ResultsReader {
  public:
-  explicit ResultsReader(std::string path) : path_(std::move(path)), file_(open(path_), H5Fclose) {}
+  explicit ResultsReader(std::string path)
+      : path_(std::move(path)), file_(open(path_, cut_), H5Fclose) {}
+
+  /// Warning about a file that is cut short; empty for others.
+  [[nodiscard]] std::string cut_text() const { return cut_ ? cut_->cut_text() : std::string(); }
 
   [[nodiscard]] std::vector<std::string> paths() const {
     std::vector<std::string> list;
@@ -52,6 +58,10 @@ class ResultsReader {
     const Handle space(H5Dget_space(set), H5Sclose), type(H5Dget_type(set), H5Tclose);
     std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
     H5Sget_simple_extent_dims(space, dims.data(), nullptr);
+    const Handle creation(H5Dget_create_plist(set), H5Pclose);
+    const H5D_layout_t layout = H5Pget_layout(creation);
+    const bool by_frame = layout == H5D_CHUNKED || layout == H5D_VIRTUAL;
+    if (cut_ && by_frame && !dims.empty()) dims[0] = std::min<hsize_t>(dims[0], cut_->frames());
     const std::vector<std::size_t> shape(dims.begin(), dims.end());
     std::size_t count = 1;
     for (const std::size_t n : shape) count *= n;
@@ -59,12 +69,12 @@ class ResultsReader {
       case H5T_STRING:
         return texts(set, type, count);
       case H5T_INTEGER: {
-        std::vector<std::int64_t> values = numbers<std::int64_t>(set, H5T_NATIVE_INT64, count);
+        std::vector<std::int64_t> values = numbers<std::int64_t>(set, H5T_NATIVE_INT64, dims);
         check(set, name, {values.begin(), values.end()}, shape, true);
         return nb::cast(array_of(std::move(values), shape));
       }
       default: {
-        std::vector<double> values = numbers<double>(set, H5T_NATIVE_DOUBLE, count);
+        std::vector<double> values = numbers<double>(set, H5T_NATIVE_DOUBLE, dims);
         check(set, name, values, shape, false);
         return nb::cast(array_of(std::move(values), shape));
       }
@@ -111,7 +121,7 @@ class ResultsReader {
       damaged(name, "has lost its checksums");
     const auto column = static_cast<std::size_t>(given);
     const std::size_t frames = std::min<std::size_t>({shape[0], times[0], dims[0]});
-    const std::vector<double> all = numbers<double>(sums, H5T_NATIVE_DOUBLE, dims[0] * dims[1]);
+    const std::vector<double> all = numbers<double>(sums, H5T_NATIVE_DOUBLE, {frames, dims[1]});
     const std::size_t size = shape[0] == 0 ? 0 : values.size() / shape[0];
     for (std::size_t k = 0; k < frames; ++k)
       if (r::checksum({values.data() + k * size, size}, integer) != all[k * dims[1] + column])
@@ -132,24 +142,41 @@ class ResultsReader {
     return dims;
   }
 
-  static hid_t open(const std::string& path) {
+  /// @param cut  Set for a file that is cut short, whose copy of the full length is opened.
+  static hid_t open(const std::string& path, std::optional<io::ResultsReader>& cut) {
     io::hdf5::prepare();
     if (!io::results::survives_a_walk(path))
       throw io::FileError(path, "is damaged: its structure is broken",
                           "Run the model again, or copy the file again");
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_file_locking(access, false, true);
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+    hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+    if (file < 0) {  // HDF5 refuses a file that is shorter than it says.
+      cut.emplace(path);
+      file = H5Fopen(cut->opened_path().c_str(), H5F_ACC_RDONLY, access);
+    }
     if (file < 0)
       throw io::FileError(path, "cannot be opened as HDF5",
                           "Give the path of a file results.h5 that a run has written");
     return file;
   }
 
+  /// Numbers of the first part of a data set, of that shape.
   template <class T>
-  [[nodiscard]] std::vector<T> numbers(hid_t set, hid_t type, std::size_t count) const {
+  [[nodiscard]] std::vector<T> numbers(hid_t set, hid_t type,
+                                       const std::vector<hsize_t>& part) const {
+    std::size_t count = 1;
+    for (const hsize_t n : part) count *= n;
     std::vector<T> values(count);
-    if (count > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    if (count == 0) return values;
+    const auto rank = static_cast<int>(part.size());
+    const Handle memory(
+        rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, part.data(), nullptr), H5Sclose);
+    const Handle source(H5Dget_space(set), H5Sclose);
+    const std::vector<hsize_t> start(part.size(), 0);
+    if (rank > 0)
+      H5Sselect_hyperslab(source, H5S_SELECT_SET, start.data(), nullptr, part.data(), nullptr);
+    if (H5Dread(set, type, memory, source, H5P_DEFAULT, values.data()) < 0)
       throw io::FileError(path_, "a data set cannot be read", "Run the model again");
     return values;
   }
@@ -175,6 +202,7 @@ class ResultsReader {
   }
 
   std::string path_;
+  std::optional<io::ResultsReader> cut_;  ///< Outlives the open file.
   Handle file_;
 };
 
@@ -184,6 +212,7 @@ void bind_results_reader(nb::module_& m) {
   m.attr("results_format_version") = io::results::kFormatVersion;
   nb::class_<ResultsReader>(m, "ResultsReader", "Reads a file results.h5.")
       .def(nb::init<std::string>(), nb::arg("path"))
+      .def("cut_text", &ResultsReader::cut_text)
       .def("paths", &ResultsReader::paths)
       .def("read", &ResultsReader::read, nb::arg("path"))
       .def("attribute", &ResultsReader::attribute, nb::arg("object"), nb::arg("name"));

@@ -314,3 +314,22 @@ def test_results_of_a_later_format_are_refused_with_what_to_do(pendulum: polhode
         f["x"] = [1.0]
     with pytest.raises(OSError, match="holds no results of Polhode"):
         polhode.open(tmp_path / "other.h5")
+
+
+def test_a_file_that_is_cut_short_says_so_and_has_its_complete_frames(pendulum: polhode.Model,
+                                                                      tmp_path: pathlib.Path) -> None:
+    pendulum.analysis.step, pendulum.analysis.duration = 1e-3, 2.0
+    polhode.run(pendulum, output=tmp_path / "run")
+    whole = polhode.open(tmp_path / "run")
+    assert not whole.cut_short
+    content = (tmp_path / "run" / "results.h5").read_bytes()
+    (tmp_path / "cut.h5").write_bytes(content[: len(content) * 9 // 10])
+    with pytest.warns(UserWarning, match="cut.h5 is cut short: only [0-9]+ complete frames of it are read"):
+        cut = polhode.open(tmp_path / "cut.h5")
+    assert cut.cut_short and 0 < cut.frames < whole.frames
+    assert np.array_equal(cut.time, whole.time[: cut.frames])
+    assert np.array_equal(cut.bodies["arm"].position, whole.bodies["arm"].position[: cut.frames])
+    assert cut.ledger.t == cut.time[-1]
+    (tmp_path / "cut.h5").write_bytes(content[: len(content) // 10])
+    with pytest.raises(OSError, match="is cut short, and has no complete frame"):
+        polhode.open(tmp_path / "cut.h5")

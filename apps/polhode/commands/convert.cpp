@@ -26,7 +26,7 @@ struct ConvertOptions {
 };
 
 void write_table(const ConvertOptions& options, const std::string& ending) {
-  const io::ResultsReader results(results_path(options.film.results));
+  const io::ResultsReader results = open_results(results_path(options.film.results));
   if (ending == ".csv")
     io::write_file_atomically(options.film.output, channels_csv(results, options.channels), false);
   else
@@ -35,7 +35,7 @@ void write_table(const ConvertOptions& options, const std::string& ending) {
 
 void write_grids(const ConvertOptions& options) {
   const std::string path = results_path(options.film.results);
-  const io::ResultsReader results(path);
+  const io::ResultsReader results = open_results(path);
   std::optional<Model> model;
   try {
     model = model_of_results(results, std::filesystem::absolute(path).parent_path().string());

@@ -41,7 +41,7 @@ Action add_plot(CLI::App& command) {
       ->type_name("FILE");
   return [options] {
     const std::string path = results_path(options->results);
-    const io::ResultsReader results(path);
+    const io::ResultsReader results = open_results(path);
     if (options->channels.empty()) {
       for (const std::string& name : channel_names(results)) print(name + "\n");
       return static_cast<int>(kOk);

@@ -310,6 +310,17 @@ ResultsReader::ResultsReader(ResultsReader&&) noexcept = default;
 
 std::size_t ResultsReader::frames() const { return impl_->frames; }
 bool ResultsReader::cut_short() const { return impl_->copy != nullptr; }
+
+std::string ResultsReader::cut_text() const {
+  if (!cut_short()) return {};
+  return format("{} is cut short: only {} complete frames of it are read. {}.", impl_->path,
+                frames(), kCopyAgain);
+}
+
+const std::string& ResultsReader::opened_path() const {
+  return impl_->copy ? impl_->copy->path() : impl_->path;
+}
+
 const std::vector<ResultsReader::DataSet>& ResultsReader::data_sets() const { return impl_->sets; }
 
 const ResultsReader::DataSet* ResultsReader::find(const std::string& path) const {

@@ -30,6 +30,11 @@ class ResultsReader {
 
   [[nodiscard]] std::size_t frames() const;  ///< Complete ones.
   [[nodiscard]] bool cut_short() const;      ///< The file is truncated.
+  /// Warning about a truncated file; empty for others.
+  [[nodiscard]] std::string cut_text() const;
+  /// Path of the file that was opened: the given one, or a temporary copy of the full length that
+  /// is removed with this reader.
+  [[nodiscard]] const std::string& opened_path() const;
   /// All stored quantities, in the order of their paths, without named views.
   [[nodiscard]] const std::vector<DataSet>& data_sets() const;
   [[nodiscard]] const DataSet* find(const std::string& path) const;
