@@ -160,17 +160,22 @@ std::string spin_table(const std::vector<ModalAnalysis>& analyses) {
   return table(rows);
 }
 
+int code_of(const ModalAnalysis& analysis) {
+  if (analysis.converged()) return kOk;
+  if (wall_limit_reached) return kLimit;
+  return stop_wanted ? kInterrupted : kNotConverged;
+}
+
 /// Computes, writes and prints the modes at all speeds of a spin. @returns the exit code.
 int run_spin(const Model& model, const ModelArguments& arguments, const std::string& folder,
              bool json, bool quiet) {
   std::vector<ModalAnalysis> analyses = spin_analyses(model, &stop_wanted);
-  int code = kOk;
+  const int code = code_of(analyses.back());  // The first that fails is the last.
   for (const ModalAnalysis& analysis : analyses) {
     for (const std::string& warning : analysis.report().warnings)
       say(format("warning: at {:g} rad/s: {}", analysis.spin(), warning));
-    if (analysis.converged()) continue;
-    code = wall_limit_reached ? kLimit : stop_wanted ? kInterrupted : kNotConverged;
-    say(format("At {:g} rad/s: {}", analysis.spin(), analysis.message()));
+    if (!analysis.converged())
+      say(format("At {:g} rad/s: {}", analysis.spin(), analysis.message()));
   }
   if (json) print(spin_json(analyses, code, folder) + "\n");
   if (!analyses.back().converged()) analyses.pop_back();
@@ -193,10 +198,7 @@ int run_modes(Model model, const ModelArguments& arguments, std::string folder, 
     folder = std::filesystem::path(arguments.file).replace_extension(".results").string();
   if (!model.analysis.spin.empty()) return run_spin(model, arguments, folder, json, quiet);
   const ModalAnalysis analysis(std::move(model), &stop_wanted);
-  const int code = analysis.converged() ? kOk
-                   : wall_limit_reached ? kLimit
-                   : stop_wanted        ? kInterrupted
-                                        : kNotConverged;
+  const int code = code_of(analysis);
   if (analysis.converged())
     io::write_modes(analysis, folder, provenance_of(arguments));
   else

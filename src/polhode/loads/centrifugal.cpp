@@ -6,11 +6,16 @@
 
 namespace polhode {
 
-CentrifugalForce::CentrifugalForce(const BodyData& data, int body, const TurningFrame& frame)
-    : frame_(frame), mass_(data.mass), inertia_(data.point_mass ? Mat3::Zero() : data.inertia) {
-  name = data.name;
-  bodies = {kGround, body};
+OfTurningFrame::OfTurningFrame(std::string of, Participants pair, double mass,
+                               const TurningFrame& frame)
+    : frame_(frame), mass_(mass) {
+  name = std::move(of);
+  bodies = pair;
 }
+
+CentrifugalForce::CentrifugalForce(const BodyData& data, int body, const TurningFrame& frame)
+    : OfTurningFrame(data.name, {kGround, body}, data.mass, frame),
+      inertia_(data.point_mass ? Mat3::Zero() : data.inertia) {}
 
 /// @eq{spin-body}
 void CentrifugalForce::evaluate(const PairStep& step, PairTerms& t) const {
@@ -23,13 +28,6 @@ void CentrifugalForce::evaluate(const PairStep& step, PairTerms& t) const {
   if (!step.context.tangents) return;
   t.D_bb.topLeftCorner<3, 3>() = square * mass_ * frame_.across();
   t.D_bb.bottomRightCorner<3, 3>() = factor * hat(omega) * (hat(L) - J * hat(omega));
-}
-
-CentrifugalCoupling::CentrifugalCoupling(std::string of, Participants pair, double mass,
-                                         const TurningFrame& frame)
-    : frame_(frame), mass_(mass) {
-  name = std::move(of);
-  bodies = pair;
 }
 
 void CentrifugalCoupling::evaluate(const PairStep& step, PairTerms& t) const {

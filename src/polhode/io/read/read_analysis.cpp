@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/io/read/read_model.hpp>
 
 namespace polhode::io {
 namespace {
@@ -110,6 +112,29 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
                   format("is above max_step: {} s > {} s", shown(*analysis.min_step),
                          shown(*analysis.max_step)),
                   "Give a smaller min_step.");
+}
+
+/// The four entries are read by the table of an analysis, from a map of them alone.
+void set_spin(const SpinText& text, AnalysisSpec& analysis) {
+  if (text.empty()) return;
+  std::string entries;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) entries += format("{}{}: {}", entries.empty() ? "" : ", ", key, value);
+  };
+  add("spin", text.spin);
+  add("spin_axis", text.axis);
+  add("spin_through", text.through);
+  add("spin_ground", text.ground);
+  const SourceTree tree = SourceTree::parse("{" + entries + "}", "the spin asked for");
+  Diagnostics diagnostics(tree.source());
+  ReadContext context{.tree = tree, .diagnostics = diagnostics};
+  Section section(context, tree.root(), {}, "analysis", analysis_fields());
+  section.read_into(analysis, {"spin"});
+  if (!text.spin.empty()) read_spin(context, section, analysis);
+  diagnostics.throw_if_any();
+  if (analysis.spin.empty())
+    throw InputError("analysis.spin", "is missing, but its axis, point or ground is given",
+                     "Give the speed of the spin");
 }
 
 namespace {

@@ -235,25 +235,4 @@ Model read_model(const std::filesystem::path& file, const Overrides& overrides) 
   return read_model_text(read_file(file.string()), file.string(), overrides);
 }
 
-void set_spin(const SpinText& text, AnalysisSpec& analysis) {
-  if (text.empty()) return;
-  std::string entries = "spin: " + (text.spin.empty() ? std::string("0") : text.spin);
-  if (!text.axis.empty()) entries += ", spin_axis: " + text.axis;
-  if (!text.through.empty()) entries += ", spin_through: " + text.through;
-  if (!text.ground.empty()) entries += ", spin_ground: " + text.ground;
-  const AnalysisSpec given =
-      read_model_text(
-          "{format: 1, bodies: {body: {mass: 1, inertia: [1, 1, 1]}}, analysis: {type: modes, " +
-              entries + "}}",
-          "the spin asked for")
-          .analysis;
-  if (!text.spin.empty()) analysis.spin = given.spin;
-  if (!text.axis.empty()) analysis.spin_axis = given.spin_axis;
-  if (!text.through.empty()) analysis.spin_through = given.spin_through;
-  if (!text.ground.empty()) analysis.spin_ground = given.spin_ground;
-  if (analysis.spin.empty())
-    throw InputError("analysis.spin", "is missing, but its axis, point or ground is given",
-                     "Give the speed of the spin");
-}
-
 }  // namespace polhode::io
