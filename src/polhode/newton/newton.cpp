@@ -48,6 +48,10 @@ constexpr double kLeftByKeptFactor = 1e-4;
 /// Tolerated leak of the multipliers, Σ|λ g|, as a part of the energy.
 constexpr double kEnergyLeak = 1e-14;
 constexpr double kNewtonRoundOff = 4.4e-16;
+/// Largest leak of rows that no contradiction keeps open, as a part of the energy: at a distance d
+/// from a singular position, in sizes of bodies, a row is open by d²/2 while d² < ε and its
+/// multiplier has done work over d, which leaves d/2 < 2e-6. And multiple of its rounding.
+constexpr double kLeakAtSingularPosition = 1e-3, kLeakRoundings = 16.0;
 
 /// Angle of a rotation from the length of its Cayley vector [deg].
 double degrees_of(double length) { return 360.0 / std::numbers::pi * std::atan(0.5 * length); }
@@ -80,6 +84,13 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     report.worst = engine.worst_other();
     if (report.worst.empty() && worst >= 0)
       report.worst = format("body '{}'", system.bodies()[worst].name);
+  };
+  const auto accept = [&] {
+    const ConstraintCheck& c = report.constraints;
+    report.leaks = c.work_defect > kLeakAtSingularPosition * options.energy_scale +
+                                       kLeakRoundings * kNewtonRoundOff * c.work_scale;
+    engine.end_step(state, trial);
+    report.converged = true;
   };
   const bool kept = engine.keeps_factor();
   const bool may_grow = engine.may_grow() || system.set_valued();
@@ -167,8 +178,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     defect_before = c.work_defect;
     const bool exact = c.work_defect <= allowed || system.rows() == 0;
     if (exact || stagnates) {
-      engine.end_step(state, trial);
-      report.converged = true;
+      accept();
       report.hard = !exact && report.iterations > options.max_iterations;
       return report;
     }
@@ -177,8 +187,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   if (close &&
       (kept || (iterated_again && report.increments.back() < kRoundOffBelow * options.tolerance))) {
     report.constraints = engine.check(state, trial);  // multipliers have grown since the last one
-    engine.end_step(state, trial);
-    report.converged = report.hard = true;
+    accept();
+    report.hard = true;
     return report;
   }
   fail(format("has not converged in {} iterations", options.max_iterations));

@@ -19,6 +19,8 @@ struct NewtonReport {
   double rotation = 0.0;           ///< Largest |Θ| in the step [-].
   /// Accepted beyond its iteration limit, with a leak of the multipliers above its tolerance.
   bool hard = false;
+  /// Multipliers do work at open rows that neither rounding nor a singular position explains.
+  bool leaks = false;
   std::string reason;  ///< If not converged: "converges too slowly", ...
   std::string worst;   ///< Location of the largest increment: "body 'forearm'".
   ConstraintCheck constraints;

@@ -28,7 +28,9 @@ std::string OpenRow::gap_text() const {
 }
 
 RowCheck::RowCheck(const System& system)
-    : system_(&system), size_(static_cast<std::size_t>(system.body_count())) {
+    : system_(&system),
+      size_(static_cast<std::size_t>(system.body_count())),
+      gaps_(static_cast<std::size_t>(system.rows())) {
   for (int b = 0; b < system.body_count(); ++b) {
     const BodyData& body = system.bodies()[b];
     size_[b] = std::sqrt(0.5 * body.inertia.trace() / body.mass);
@@ -56,6 +58,7 @@ RowCheck::RowCheck(const System& system)
 
 bool RowCheck::hold(const State& state, const Trial& trial, bool rounded) {
   open_ = {};
+  std::fill(gaps_.begin(), gaps_.end(), 0.0);
   PairTerms terms;
   terms.set_zero();
   const double turned = kTurnOfStep * static_cast<double>(state.ledger.steps + 1);
@@ -84,7 +87,8 @@ bool RowCheck::hold(const State& state, const Trial& trial, bool rounded) {
       const double noise = kRowRoundOff * (by_r * reach + by_theta * angle + spring);
       const double tolerance =
           rounded ? kAtRoundOff * noise : kTolerance * (by_r * length + by_theta) + noise;
-      const double gap = std::abs(terms.g[k] + terms.compliance[k] * step.lambda[k]);
+      gaps_[ref.first_row + k] = terms.g[k] + terms.compliance[k] * step.lambda[k];
+      const double gap = std::abs(gaps_[ref.first_row + k]);
       if (!(gap <= open_.over * tolerance)) open_ = {i, gap, gap / tolerance, by_r > 0.0};
     }
   }

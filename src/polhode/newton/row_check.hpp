@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,14 @@ class RowCheck {
   [[nodiscard]] bool hold(const State& state, const Trial& trial, bool rounded);
   /// The row found by the last hold() that returned false.
   [[nodiscard]] const OpenRow& open() const { return open_; }
+  /// Values of all rows in the last hold() [m or rad].
+  [[nodiscard]] std::span<const double> gaps() const { return gaps_; }
 
  private:
   const System* system_;
   std::vector<double> size_;  ///< Of each body: its joint arms, or radius of gyration [m].
   double smallest_ = 0.0;     ///< Lower bound of the tolerances [m or -].
+  std::vector<double> gaps_;
   OpenRow open_;
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/newton/rank_report.hpp>
@@ -21,6 +23,10 @@ constexpr double kLeastGap = 1e-3;
 /// Relative size of nearly dependent combinations of rows. The distance of a mechanism from its
 /// limit position is the square of that.
 constexpr double kNearlyDependent[] = {1e-7, 1e-5, 1e-3, 1e-2};
+
+/// Part of the gaps after a step that no motion closes: an iteration that has ended has closed the
+/// others.
+constexpr double kMostOfGap = 0.5;
 
 constexpr std::size_t kMostNames = 12;
 
@@ -77,6 +83,17 @@ std::vector<std::string> contradicting(const System& system, const State& state,
   return found(in_step, kNotCurvature, dt) ? in_step.names : std::vector<std::string>();
 }
 
+std::vector<std::string> held_open(const System& system, const State& state,
+                                   std::span<const double> gaps) {
+  const Contradiction found = find_contradiction(system, state, gaps);
+  if (!(found.part > kMostOfGap * found.of)) return {};
+  for (const int drive : system.drives())
+    if (std::find(found.names.begin(), found.names.end(), interaction_name(system, drive)) !=
+        found.names.end())
+      return found.names;
+  return {};
+}
+
 std::vector<std::string> at_limit(const System& system, const State& state) {
   if (system.drives().empty()) return {};
   const std::vector<double> rates = rates_of_drives(system, state, 0.0);
@@ -92,13 +109,12 @@ std::string gap_text(const System& system, const OpenRow& open, double dt) {
                 interaction_name(system, open.interaction));
 }
 
-std::string contradiction_text(const System& system, const State& state, double dt,
+std::string contradiction_text(double t, const std::vector<std::string>& names,
                                const std::string& gap) {
-  const std::vector<std::string> names = contradicting(system, state, dt);
   if (names.empty()) return {};
   return format(
-      "At t = {:.9g} s these cannot all hold: {}; {}. Remove one of them, or change its motion.",
-      state.t, name_list(names, kMostNames), gap);
+      "At t = {:.9g} s these cannot all hold: {}; {}. Remove one of them, or change its motion.", t,
+      name_list(names, kMostNames), gap);
 }
 
 std::string limit_text(const System& system, const State& state, const std::string& gap) {

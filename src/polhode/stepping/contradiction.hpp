@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ namespace polhode {
 [[nodiscard]] std::vector<std::string> contradicting(const System& system, const State& state,
                                                      double dt);
 
+/// Joints and drives whose rows are dependent at a state, and whose gaps after a step are those
+/// that no motion closes; empty if none of them is a drive, whose values alone differ from one step
+/// to the next.
+/// @param gaps  By row.
+[[nodiscard]] std::vector<std::string> held_open(const System& system, const State& state,
+                                                 std::span<const double> gaps);
+
 /// Joints and drives that are close to a limit position at a state: their rows are nearly
 /// dependent, and the nearly dependent combination does not allow the rates of the drives.
 [[nodiscard]] std::vector<std::string> at_limit(const System& system, const State& state);
@@ -24,8 +32,8 @@ namespace polhode {
 /// Gap that a step of length dt leaves at a row.
 [[nodiscard]] std::string gap_text(const System& system, const OpenRow& open, double dt);
 /// Message about joints and drives that contradict each other; empty if there are none.
-/// @param gap  As in gap_text(), of the first step whose rows did not hold.
-[[nodiscard]] std::string contradiction_text(const System& system, const State& state, double dt,
+/// @param names  Theirs. @param gap  As in gap_text(), of the first step whose rows did not hold.
+[[nodiscard]] std::string contradiction_text(double t, const std::vector<std::string>& names,
                                              const std::string& gap);
 /// Message about a limit position; empty if it is none. @param gap  Likewise, or empty.
 [[nodiscard]] std::string limit_text(const System& system, const State& state,

@@ -9,6 +9,7 @@
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/kernels/denormals.hpp>
 #include <polhode/newton/rank_report.hpp>
+#include <polhode/stepping/contradiction.hpp>
 #include <polhode/stepping/instant.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/stored_rates.hpp>
@@ -189,9 +190,17 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
 /// Small increments do not close rows that contradict each other: with the proximal iteration the
 /// bodies stay where the gaps are smallest, and the multipliers grow for ever. @eq{row-tolerance}
 bool SingleStep::is_open(const State& state, NewtonReport& report) {
-  if (system_->rows() == 0 || rows_.surely_hold(report.constraints, to_round_off_) ||
-      rows_.hold(state, trial_, to_round_off_))
+  if (system_->rows() == 0) return false;
+  contradicting_.clear();
+  const bool holds = rows_.surely_hold(report.constraints, to_round_off_) ||
+                     rows_.hold(state, trial_, to_round_off_);
+  // Their tolerance is that of singular positions. Drives that contradict each other have none, and
+  // their multipliers grow at any gap.
+  if (holds && (!report.leaks || to_round_off_ || system_->drives().empty() ||
+                rows_.hold(state, trial_, true)))
     return false;
+  if (!system_->drives().empty()) contradicting_ = held_open(*system_, state, rows_.gaps());
+  if (holds && contradicting_.empty()) return false;
   open_ = rows_.open();
   report.reason =
       format("{} remains at {}", open_->gap_text(), interaction_name(*system_, open_->interaction));

@@ -41,6 +41,8 @@ class SingleStep {
   void hold_to_round_off(bool yes) { to_round_off_ = yes; }
   /// The open row if the last trial was refused because not all rows hold.
   [[nodiscard]] const std::optional<OpenRow>& open_row() const { return open_; }
+  /// Joints and drives that cannot all hold, if its rows showed that.
+  [[nodiscard]] const std::vector<std::string>& contradicting() const { return contradicting_; }
 
   EnergyLedger& ledger() { return ledger_; }
   [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
@@ -73,6 +75,7 @@ class SingleStep {
   std::vector<int> always_queried_;  ///< Interactions whose acceptance is always queried.
   double error_ = 0.0;
   std::optional<OpenRow> open_;
+  std::vector<std::string> contradicting_;
   bool to_round_off_ = false;
   bool jumped_ = false, stopped_ = false;
   double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.

@@ -432,7 +432,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     if (const auto& open = single.open_row(); open && !report.newton.converged && gap.empty()) {
       gap = gap_text(system, *open, H);
       // A shorter step would only make the gap smaller.
-      report.message = contradiction_text(system, state, H, gap);
+      std::vector<std::string> names = contradicting(system, state, H);
+      if (names.empty()) names = single.contradicting();
+      report.message = contradiction_text(state.t, names, gap);
       if (!report.message.empty()) return report;
       single.hold_to_round_off(true);
     }
