@@ -34,7 +34,16 @@ TEST_F(CommandLine, PrintsAndWritesACampbellDiagram) {
     EXPECT_TRUE(exists(file)) << file;
   EXPECT_THAT(read("out/campbell.csv"),
               HasSubstr("spin [rad/s],mode,frequency [Hz],world_frequency [Hz],whirl"));
-  EXPECT_THAT(read("out/campbell.svg"), HasSubstr("in the turning frame [Hz]"));
+  const std::string picture = read("out/campbell.svg");
+  EXPECT_THAT(picture,
+              AllOf(HasSubstr("frequency in the turning frame [Hz]"), HasSubstr("once a turn")));
+  // Each whirl of the pair that the springs hold, in both diagrams, from rest on.
+  for (const char* colour : {"#1f77b4", "#d62728"}) {
+    std::size_t curves = 0;
+    for (std::size_t at = 0; (at = picture.find("<path d=\"M60.0 ", at)) != std::string::npos; ++at)
+      if (picture.find(colour, at) < picture.find("/>", at)) ++curves;
+    EXPECT_GE(curves, 2U) << colour;
+  }
   const auto json = run({"modes", "rotor.yaml", "--spin", "7", "--axis", "[0, 0, 2]", "--json"});
   ASSERT_EQ(json.code, 0) << json.err;
   EXPECT_EQ(value(json.out, "spin"), "7.0");

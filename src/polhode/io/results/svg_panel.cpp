@@ -113,6 +113,14 @@ void SvgPanel::curve(const std::vector<double>& x, const std::vector<double>& y,
                     dashed ? " stroke-dasharray=\"5 3\"" : "");
 }
 
+void SvgPanel::points(const std::vector<double>& x, const std::vector<double>& y,
+                      const char* colour) {
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i)
+    if (std::isfinite(y[i]))
+      curves_ += format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\" fill=\"{}\"/>\n", px(x[i]),
+                        py(y[i]), colour);
+}
+
 void SvgPanel::band(const std::vector<double>& x, const std::vector<double>& low,
                     const std::vector<double>& high, const char* colour) {
   std::string there, back;

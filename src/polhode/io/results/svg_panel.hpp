@@ -26,6 +26,8 @@ class SvgPanel {
   /// Draws a curve, interrupted at points that are not finite and clipped.
   void curve(const std::vector<double>& x, const std::vector<double>& y, const char* colour,
              bool dashed = false);
+  /// Marks points, as those of a curve that were computed.
+  void points(const std::vector<double>& x, const std::vector<double>& y, const char* colour);
   /// Fills the area between two curves.
   void band(const std::vector<double>& x, const std::vector<double>& low,
             const std::vector<double>& high, const char* colour);
