@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <polhode/core/format.hpp>
@@ -54,26 +55,28 @@ TEST(SoftOnSoft, FindsTheEquilibriumFromEveryStart) {
   }
 }
 
-/// In motion, at a coarse step, the default one and a hundredth of that: steps converge without
-/// rejections, and the balances close.
+/// In motion, at a coarse step, a tenth and a hundredth of it, the balances close at each. The
+/// coarse step is a tenth of the time in which the punch comes down, and may be refused; the others
+/// are not, and they take fewer iterations the shorter they are: at a kink of the gap iterations
+/// would alternate whatever the step.
 // @tests{patch-force}
 TEST(SoftOnSoft, IsPressedAtEveryStep) {
   const std::string time = "*(t<0.5 ? 0.5-0.5*cos(pi*t/0.5) : 1)",
                     viscous = ", viscosity: {relaxation_time: 10 ms}";
-  struct Run {
-    const char* analysis;
-    double rejected, iterations;  // at most, of and in a step
-  };
-  for (const Run& run : {Run{"{duration: 0.8, step: 50 ms}", 0.5, 40.0},
-                         {"{duration: 0.2, step: 5 ms}", 0.05, 15.0},
-                         {"{duration: 0.08, step: 0.5 ms}", 0.02, 6.0}}) {
-    SCOPED_TRACE(run.analysis);
-    Simulation s(io::read_model_text(blocks(0.0, 0.0, 0.3, time, viscous, run.analysis), "p.yaml"));
+  double iterations = std::numeric_limits<double>::infinity();  // in a step of the run before
+  for (const char* analysis : {"{duration: 0.8, step: 50 ms}", "{duration: 0.2, step: 5 ms}",
+                               "{duration: 0.08, step: 0.5 ms}"}) {
+    SCOPED_TRACE(analysis);
+    Simulation s(io::read_model_text(blocks(0.0, 0.0, 0.3, time, viscous, analysis), "p.yaml"));
     const RunSummary summary = s.run();
     ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
-    const auto steps = static_cast<double>(summary.steps);
-    EXPECT_LE(static_cast<double>(summary.rejected_steps), run.rejected * steps);
-    EXPECT_LE(static_cast<double>(summary.newton_iterations), run.iterations * steps);
+    if (std::isfinite(iterations)) {
+      EXPECT_EQ(summary.rejected_steps, 0);
+    }
+    const double now =
+        static_cast<double>(summary.newton_iterations) / static_cast<double>(summary.steps);
+    EXPECT_LT(now, iterations);
+    iterations = now;
     EXPECT_LT(summary.energy_drift, 1e-11);
     EXPECT_LT(summary.linear_momentum_drift, 1e-10);
     EXPECT_LT(summary.angular_momentum_drift, 1e-10);
