@@ -112,6 +112,41 @@ TEST_F(CommandLine, NamesWhatCannotHoldInStaticsAndTheGap) {
     }
 }
 
+// Before the run: the load factor is that of the end of the reach, to a hundredth of the load.
+// @tests{statics-gap}
+TEST_F(CommandLine, ChecksTheReachOfDrivesBeforeAStaticRun) {
+  for (const Impossible& c : kCases) {
+    std::string model = c.model;
+    model.replace(model.find("MOTION"), 6, c.motion);
+    write("gap.yaml", model + "analysis: {type: statics}\n");
+    const auto result = run({"check", "gap.yaml"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    const std::size_t at = result.err.find("Beyond load factor ");
+    ASSERT_NE(at, std::string::npos) << result.err;
+    double from = -1.0, gap = -1.0;
+    ASSERT_EQ(std::sscanf(result.err.c_str() + at, "Beyond load factor %lf", &from), 1);
+    EXPECT_LE(from, c.from + 1e-3) << c.names;  // three figures
+    EXPECT_GE(from, c.from - 0.01 - 1e-3) << c.names;
+    const std::size_t whole = result.err.find("; at the whole load a gap of ", at);
+    ASSERT_NE(whole, std::string::npos) << result.err;
+    ASSERT_EQ(
+        std::sscanf(result.err.c_str() + whole, "; at the whole load a gap of %lf m remains", &gap),
+        1);
+    EXPECT_NEAR(gap, c.gap(1.0), 0.05 * c.gap(1.0)) << c.names;
+    EXPECT_THAT(result.err, HasSubstr("these cannot all hold: " + c.names + "; at the whole load"));
+    EXPECT_THAT(result.err, HasSubstr("m remains at " + c.drive + ". Remove one of them"));
+  }
+  // A crank that turns three times takes its slider along; a bar follows its circle.
+  std::string crank = kSliderCrank, bar = kBar;
+  crank.replace(crank.find("linear_motor, joint: guide, MOTION"), 34,
+                "rotary_motor, joint: pivot, angle: 6*pi");
+  bar.replace(bar.find("MOTION"), 6, "z: -0.3");
+  for (const std::string& model : {crank, bar}) {
+    write("holds.yaml", model + "analysis: {type: statics}\n");
+    EXPECT_THAT(run({"check", "holds.yaml"}).err, testing::Not(HasSubstr("Beyond load factor")));
+  }
+}
+
 // What the drives ask for can be done: the message is not about them.
 TEST_F(CommandLine, NamesNoGapInStaticsWhereTheDrivesCanHold) {
   for (const int steps : {1, 10, 100}) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include <polhode/loads/registry.hpp>
 #include <polhode/newton/rank_report.hpp>
 #include <polhode/newton/tangent_check.hpp>
+#include <polhode/statics/static_reach.hpp>
 #include <polhode/stepping/contradiction.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 
@@ -43,6 +45,20 @@ std::vector<std::string> contradictions(const Simulation& simulation) {
   constexpr double kStepOfDuration = 0.01;
   return contradicting(simulation.system(), simulation.state(),
                        analysis.step.value_or(kStepOfDuration * analysis.duration));
+}
+
+/// A drive that leaves the reach of the joints as the load of a static run grows.
+void add_end_of_reach(const Simulation& simulation, std::vector<std::string>& list) {
+  const AnalysisSpec& analysis = simulation.model().analysis;
+  if (analysis.type != "statics" || analysis.history) return;
+  const std::optional<ReachEnd> end = end_of_reach(simulation.system(), simulation.state());
+  if (!end) return;
+  list.push_back(format(
+      "Beyond load factor {:.3g} these cannot all hold: {}; {} {} remains at {}. Remove one of "
+      "them, or change its motion.",
+      end->load_factor, name_list(end->gap.names, 12),
+      end->whole ? "at the whole load" : "shortly beyond", end->gap.open.gap_text(),
+      interaction_name(simulation.system(), end->gap.open.interaction)));
 }
 
 /// Jumps of the laws of a load over a rate, where it acts like dry friction.
@@ -99,6 +115,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                "and rebound are too small. Set rho_inf: 1.",
                simulation.model().analysis.rho_inf));
   for (const LoadSpec& load : simulation.model().loads) add_law_jumps(load, list);
+  add_end_of_reach(simulation, list);
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
   return list;

@@ -56,6 +56,8 @@ class StaticNewton {
   /// The rows that no positions of the bodies satisfy at a load factor, near a state, whatever the
   /// forces. Derivation: @eq{statics-gap}
   [[nodiscard]] RowGap least_gap(const State& state, double load_factor);
+  /// The place of the last least_gap().
+  [[nodiscard]] const State& nearest() const { return work_; }
   /// Sets StaticOptions::stop.
   void set_stop(const std::atomic<bool>* stop) { options_.stop = stop; }
 
