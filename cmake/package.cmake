@@ -44,7 +44,7 @@ else()
     string(REGEX REPLACE ":.*" "" owner "${owner}")
     # With another BLAS than here its results would differ in the last bits.
     set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "${owner}, libopenblas0-pthread")
-    set(needed libeigen3-dev libfmt-dev libyaml-cpp-dev libhdf5-dev nlohmann-json3-dev libssl-dev zlib1g-dev
+    set(needed libeigen3-dev libfmt-dev libyaml-cpp-dev libtinyxml2-dev libhdf5-dev nlohmann-json3-dev libssl-dev zlib1g-dev
       libsuitesparse-dev ${owner})
     list(JOIN needed ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
   endif()

@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(libc6-dev libstdc++6 libeigen3-dev libfmt-dev libyaml-cpp-dev libhdf5-dev
+packages=(libc6-dev libstdc++6 libeigen3-dev libfmt-dev libyaml-cpp-dev libtinyxml2-dev libhdf5-dev
   libsuitesparse-dev libmumps-seq-dev libopenblas-pthread-dev libspectra-dev libssl-dev zlib1g-dev
   nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev)
 sysroot=$PWD/build/arm64-sysroot

@@ -22,7 +22,7 @@ LAYERS = [
     ["compile"],
     ["simulation"],
     ["io/text"],
-    ["io/schema"],
+    ["io/schema", "io/importers"],
     ["io/read"],
     ["io/results"],
     ["study", "view"],

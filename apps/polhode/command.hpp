@@ -37,7 +37,8 @@ struct Command {
 [[nodiscard]] const std::vector<Command>& commands();
 
 struct ModelArguments;
-/// Adds --set PATH=VALUE to commands that read a model.
+/// Adds --set PATH=VALUE, and options of imports that stand for some of it, to commands that read a
+/// model.
 void add_set_option(CLI::App& command, ModelArguments& arguments);
 
 /// Adds --isa SET to commands that run a model.
@@ -55,6 +56,7 @@ Action add_modes(CLI::App& command);
 Action add_view(CLI::App& command);
 Action add_plot(CLI::App& command);
 Action add_convert(CLI::App& command);
+Action add_import(CLI::App& command);
 Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_schema(CLI::App& command);

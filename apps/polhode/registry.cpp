@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/schema/field_table.hpp>
@@ -17,7 +20,10 @@ const std::vector<Command>& commands() {
       {"modes", "Natural frequencies and shapes of a model about its equilibrium", add_modes},
       {"view", "Show results, or a model before it runs, as an animation in a browser", add_view},
       {"plot", "Draw channels of results over time, as an SVG picture", add_plot},
-      {"convert", "Write results as a table, a scene for other programs, or a film", add_convert},
+      {"convert",
+       "Write results as a table, a scene for other programs, or a film; a robot's file as a model",
+       add_convert},
+      {"import", "Report what is read from a robot's file, and what is not", add_import},
       {"check", "Check a model: mobility, redundant rows, start, tangents", add_check},
       {"info", "List what a model contains, or the kinds of joints, loads and shapes", add_info},
       {"schema", "Write the JSON Schema or the reference page of the model file", add_schema},
@@ -34,6 +40,39 @@ void add_set_option(CLI::App& command, ModelArguments& arguments) {
       ->take_all()
       ->expected(1)
       ->type_name("NAME=VALUE");
+  const char* group = "Import of a robot's file";
+  const auto set = [&arguments](const std::string& text) { arguments.overrides.push_back(text); };
+  command
+      .add_flag_callback(
+          "--allow-partial", [set] { set("import.allow_partial=true"); },
+          "Leave out what cannot be represented, and report it")
+      ->group(group);
+  command
+      .add_flag_callback(
+          "--floating", [set] { set("import.base=floating"); }, "Let the first link move freely")
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--overlay", [set](const std::string& file) { set("import.overlay=" + file); },
+          "Model file that adds to it; left out: that of its name with .overlay.yaml, if there is "
+          "one")
+      ->type_name("FILE")
+      ->group(group);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--package-path",
+          [set](const std::vector<std::string>& folders) {
+            std::string list;
+            for (const std::string& folder : folders)
+              list += (list.empty() ? "" : ", ") +
+                      nlohmann::json(std::filesystem::absolute(folder).string()).dump();
+            set("import.package_paths=[" + list + "]");
+          },
+          "Folder that contains the packages of package:// names; may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->type_name("FOLDER")
+      ->group(group);
 }
 
 void add_isa_option(CLI::App& command, std::string& isa) {

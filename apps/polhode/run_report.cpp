@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/read/read_import.hpp>
 #include <polhode/io/results/summary_json.hpp>
 #include <polhode/io/text/file_error.hpp>
 
@@ -29,12 +30,13 @@ std::string end_name(int exit_code) {
 }
 
 io::Provenance provenance_of(const ModelArguments& model, const RunSummary& summary) {
+  io::ExpandedModel source = io::expanded_model(model.file, model.overrides);
   return {.version = POLHODE_VERSION,
           .solver = summary.solver,
           .instruction_set = summary.instruction_set,
           .model_file = std::filesystem::path(model.file).filename().string(),
-          .model_text = io::read_file(model.file),
-          .overrides = model.overrides};
+          .model_text = std::move(source.text),
+          .overrides = std::move(source.overrides)};
 }
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {

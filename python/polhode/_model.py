@@ -349,11 +349,13 @@ def _restore(tree: "dict[str, Any]", origin: "Optional[_Origin]") -> Model:
     return model
 
 
-def load(path: "Union[str, os.PathLike[str]]") -> Model:
-    """Reads a model file, YAML or JSON. Raises ModelError if it is not well-formed, OSError if it
-    cannot be read. Values are checked by check() and before a run."""
+def load(path: "Union[str, os.PathLike[str]]", **options: Any) -> Model:
+    """Reads a model file, YAML or JSON, or a robot's file (.urdf, .xacro). Raises ModelError if it is not
+    well-formed, OSError if it cannot be read. Values are checked by check() and before a run.
+
+    Options are those of `import` in the model file: load("robot.urdf", base="floating", start={"elbow": 0.5})."""
     name = os.fspath(path)
-    return from_text(_native.read_text(name), name)
+    return from_text(_native.expanded(name, overrides_list({f"import.{k}": v for k, v in options.items()})), name)
 
 
 def from_text(text: str, name: str = "model.yaml") -> Model:

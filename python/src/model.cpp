@@ -5,6 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/core/time_sum.hpp>
+#include <polhode/io/read/read_import.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/read/time_function.hpp>
 #include <polhode/io/schema/schema.hpp>
@@ -139,6 +140,13 @@ void bind_model(nb::module_& m) {
         return tree(io::SourceTree::parse(std::move(text), std::move(name)).root());
       },
       nb::arg("text"), nb::arg("name"), "A model text as dicts, lists, numbers and texts.");
+  m.def(
+      "expanded",
+      [](const std::string& path, const io::Overrides& overrides) {
+        return io::expanded_model(path, overrides).text;
+      },
+      nb::arg("path"), nb::arg("overrides"),
+      "The text of a model file, with the content of a robot's file that it imports or is.");
   m.def("closest", &closest, nb::arg("word"), nb::arg("candidates"),
         "The candidate nearest to a mistyped word, or an empty text.");
   nb::class_<CompiledModel>(m, "CompiledModel", "A model that was read and checked.",

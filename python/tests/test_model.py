@@ -234,3 +234,16 @@ def test_copies_do_not_change_with_the_model(pendulum: polhode.Model) -> None:
     other = pendulum.copy()
     pendulum.bodies["arm"].density = 1
     assert other == make_pendulum() and other != pendulum
+
+
+def test_a_robot_is_a_model(tmp_path: pathlib.Path) -> None:
+    inertial = "<inertial><mass value='2'/><inertia ixx='0.3' iyy='0.3' izz='0.2'/></inertial>"
+    (tmp_path / "robot.urdf").write_text(
+        f"<robot name='r'><link name='trunk'>{inertial}</link><link name='leg'>{inertial}</link>"
+        "<joint name='hip' type='continuous'><parent link='trunk'/><child link='leg'/></joint></robot>")
+    m = polhode.load(tmp_path / "robot.urdf", base="floating", start={"hip": 0.5})
+    assert m.bodies["leg"].mass == 2 and m.joints["hip"].type == "revolute"
+    assert polhode.load(tmp_path / "robot.urdf").bodies["trunk"].fixed
+    assert m.check().mobility == 7
+    with pytest.raises(polhode.ModelError):
+        polhode.load(tmp_path / "robot.urdf", base="flying")

@@ -3,7 +3,9 @@
 #include <memory>
 #include <optional>
 
+#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/io/read/read_import.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/view/channels.hpp>
 #include <polhode/view/glb.hpp>
@@ -23,6 +25,7 @@ struct ConvertOptions {
   FilmRequest film;  ///< Including the names of both files.
   std::vector<std::string> channels;
   std::string size;
+  ModelArguments model;  ///< Of a robot's file.
 };
 
 void write_table(const ConvertOptions& options, const std::string& ending) {
@@ -54,9 +57,31 @@ bool read_size(const std::string& text, FilmRequest& film) {
           film.width >= 16 && film.height >= 16 && film.width <= 8192 && film.height <= 8192);
 }
 
+/// Writes a model file without imports. Paths of meshes are relative to its folder.
+void write_model(const ConvertOptions& options) {
+  const std::string folder = std::filesystem::path(options.film.output).parent_path().string();
+  const io::ExpandedModel model =
+      io::expanded_model(options.model.file, folder, options.model.overrides);
+  if (!model.overrides.empty())
+    throw InputError("polhode convert", "--set is for the import only",
+                     "Give --set import.base=floating, for example, or change the model file");
+  for (const io::ImportNote& n : model.report.notes)
+    if (n.kind != io::ImportNote::Kind::ignored)
+      say(format("{}:{}: {}: {}.", n.place.file, n.place.line, io::word_of(n.kind), n.what));
+  io::write_file_atomically(options.film.output, model.text, false);
+}
+
 int convert(ConvertOptions& options) {
   const std::string ending = std::filesystem::path(options.film.output).extension().string();
-  if (ending == ".csv" || ending == ".parquet") {
+  options.model.file = options.film.results;
+  if (io::is_importable(options.model.file)) {
+    if (ending != ".yaml" && ending != ".yml") {
+      say(format("polhode convert: a robot's file becomes a model file, not {}. Name a .yaml file.",
+                 ending.empty() ? "a folder" : "'" + ending + "'"));
+      return kUsage;
+    }
+    write_model(options);
+  } else if (ending == ".csv" || ending == ".parquet") {
     write_table(options, ending);
   } else if (ending == ".vtkhdf") {
     write_grids(options);
@@ -84,12 +109,15 @@ int convert(ConvertOptions& options) {
 
 Action add_convert(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
-  command.add_option("RESULTS", options->film.results, "Results (results.h5 or their folder)")
+  command
+      .add_option("RESULTS", options->film.results,
+                  "Results (results.h5 or their folder), or a robot's file (.urdf, .xacro)")
       ->required();
+  add_set_option(command, options->model);
   command
       .add_option("OUTPUT", options->film.output,
                   "A table (.csv, .parquet), a scene (.vtkhdf for ParaView, .glb), a film (.gif, "
-                  ".mp4) or a folder for its pictures")
+                  ".mp4), a folder for its pictures, or a model file (.yaml) of a robot")
       ->required();
   command
       .add_option("--channels", options->channels,

@@ -142,6 +142,8 @@ class JointReader {
         read_body_axes();
         return;
       }
+      if (takes("x_axis_body") && section_.has("x_axis_body"))
+        section_.fault("x_axis_body", "requires 'axis_body'", "Give both, or x_axis.");
     }
     const auto axis = section_.direction("axis");
     const auto x = section_.direction("x_axis");
@@ -176,6 +178,10 @@ class JointReader {
     const auto z = section_.direction_pair("axis_body");
     const auto x = section_.direction("x_axis");
     if (!z) return;
+    if (takes("x_axis_body") && section_.has("x_axis_body")) {
+      read_zero(*z);
+      return;
+    }
     const Vec3 z_a = a_.Lambda * (*z)[0], z_b = b_.Lambda * (*z)[1];
     if (x && !check_x(z_a, *x)) return;
     const Mat3 F = axes_about(z_a, x ? x : across(z_a, rod_direction()));
@@ -183,6 +189,22 @@ class JointReader {
     const Quat turn = rotation_between(z_a, z_b);
     joint_.R_a = a_.Lambda.transpose() * F;
     joint_.R_b = b_.Lambda.transpose() * (turn * F);
+    joint_.assembled_start = true;
+  }
+
+  /// x on each body in addition to z, which says where the angle is zero.
+  void read_zero(const std::array<Vec3, 2>& z) {
+    if (section_.refuse_both("x_axis", "x_axis_body", "Give one of them.")) return;
+    const auto x = section_.direction_pair("x_axis_body");
+    if (!x) return;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if ((*x)[k].cross(z[k]).norm() > 1e-3) continue;
+      section_.fault("x_axis_body", "is parallel to the joint's z",
+                     "Give directions transverse to the axis.");
+      return;
+    }
+    joint_.R_a = axes_about(z[0], (*x)[0]);
+    joint_.R_b = axes_about(z[1], (*x)[1]);
     joint_.assembled_start = true;
   }
 

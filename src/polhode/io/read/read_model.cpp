@@ -6,6 +6,7 @@
 #include <polhode/compile/contact_sides.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/io/read/read_import.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 namespace polhode::io {
@@ -144,6 +145,9 @@ void read_things(ReadContext& context, const SourceNode& root, const std::string
                   path, model_fields());
   if (!root.is_map()) return;
   Model& model = context.model;
+  if (const SourceNode* node = section.find("import"))
+    context.fault(*node, section.path("import"), "is allowed at the top of a model only",
+                  "Convert the file to a model file, and name that.");
   section.integer("format");
   if (const auto title = section.text("title")) model.title = *title;
   if (const SourceNode* node = section.find("units")) read_units(context, *node);
@@ -216,23 +220,33 @@ void check_model(ReadContext& context, const SourceNode& root) {
   }
 }
 
-Model read_model_text(std::string text, const std::string& filename, const Overrides& overrides) {
-  SourceTree tree = SourceTree::parse(std::move(text), filename);
+namespace {
+
+Model read_source(ModelText source) {
+  SourceTree tree = SourceTree::parse(std::move(source.text), std::move(source.shown));
   Diagnostics diagnostics(tree.source());
-  apply_overrides(tree, overrides, diagnostics);
+  const std::string folder = std::filesystem::path(source.file).parent_path().string();
+  static_cast<void>(expand_import(tree, folder, folder, source.overrides, diagnostics));
+  apply_overrides(tree, source.overrides, diagnostics);
   diagnostics.throw_if_any();
   ReadContext context{.tree = tree, .diagnostics = diagnostics};
-  context.folder = std::filesystem::path(filename).parent_path().string();
-  context.model.source_file = filename;
-  context.source_file = filename;
-  context.files_above = {full_path(filename)};
+  context.folder = folder;
+  context.model.source_file = source.file;
+  context.source_file = source.file;
+  context.files_above = {full_path(source.file)};
   read_root(context, tree.root());
   diagnostics.throw_if_any();
   return std::move(context.model);
 }
 
+}  // namespace
+
+Model read_model_text(std::string text, const std::string& filename, const Overrides& overrides) {
+  return read_source({std::move(text), filename, filename, overrides});
+}
+
 Model read_model(const std::filesystem::path& file, const Overrides& overrides) {
-  return read_model_text(read_file(file.string()), file.string(), overrides);
+  return read_source(model_text_of(file.string(), overrides));
 }
 
 }  // namespace polhode::io

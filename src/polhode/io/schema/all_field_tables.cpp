@@ -5,22 +5,12 @@
 namespace polhode::io {
 
 std::vector<const FieldTable*> all_field_tables() {
-  std::vector<const FieldTable*> tables = {&model_fields(),
-                                           &part_fields(),
-                                           &units_fields(),
-                                           &body_fields(),
-                                           &inertia_fields(),
-                                           &orientation_fields(),
-                                           &euler_fields(),
-                                           &body_motion_fields(),
-                                           &motion_fields(),
-                                           &moving_euler_fields(),
-                                           &moving_quaternion_fields(),
-                                           &shape_fields(),
-                                           &mesh_fields(),
-                                           &hull_fields(),
-                                           &height_field_fields(),
-                                           &contact_side_fields()};
+  std::vector<const FieldTable*> tables = {
+      &model_fields(),       &part_fields(),    &import_fields(),       &units_fields(),
+      &body_fields(),        &inertia_fields(), &orientation_fields(),  &euler_fields(),
+      &body_motion_fields(), &motion_fields(),  &moving_euler_fields(), &moving_quaternion_fields(),
+      &shape_fields(),       &mesh_fields(),    &hull_fields(),         &height_field_fields(),
+      &contact_side_fields()};
   for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : friction_tables()) tables.push_back(&kind.table);
   tables.push_back(&angle_limit_fields());

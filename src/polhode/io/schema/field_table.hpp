@@ -125,6 +125,7 @@ std::string sentence(std::string text);
 
 const FieldTable& model_fields();
 const FieldTable& part_fields();
+const FieldTable& import_fields();
 const FieldTable& units_fields();
 const FieldTable& body_fields();
 const FieldTable& inertia_fields();

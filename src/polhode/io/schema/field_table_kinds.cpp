@@ -42,6 +42,12 @@ const Field kAxisBody{
     .kind = kDirectionPair,
     .meaning =
         "Instead of axis: z on a and on b, each in its body's axes; the start is then assembled."};
+const Field kXAxisBody{
+    .name = "x_axis_body",
+    .kind = kDirectionPair,
+    .meaning =
+        "With axis_body, instead of x_axis: x on a and on b, each in its body's axes; made "
+        "perpendicular to z. The angle is 0 where they agree, not at the start."};
 const Field kXAxis{
     .name = "x_axis",
     .kind = kDirection,
@@ -114,6 +120,7 @@ KindTable joint_table(const JointKind& kind) {
       fields.back().standard = kind.points_apart ? "from the point of a to that of b" : "z";
     if (axis == Axis::kRequired) fields.push_back(kAxisBody);
     fields.push_back(kXAxis);
+    if (axis == Axis::kRequired && !kind.points_apart) fields.push_back(kXAxisBody);
     if (axis == Axis::kRequired && kind.points_apart)
       fields.back().standard = "from the point of a to that of b, made perpendicular to z";
   }

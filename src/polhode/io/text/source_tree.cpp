@@ -337,12 +337,14 @@ SourceTree SourceTree::parse(std::string text, std::string filename, const Sourc
 }
 
 SourceLocation SourceTree::place_of(const SourceNode& node) const {
+  if (node.origin < 0)
+    return {further_[static_cast<std::size_t>(-node.origin) - 1]->name(), node.line, node.column};
   if (node.origin > 0) return {overrides_[static_cast<std::size_t>(node.origin) - 1], 0, 0};
   return {source_->name(), node.line, node.column};
 }
 
 SourceLocation SourceTree::place_of(const SourceNode::Key& key, const SourceNode& value) const {
-  if (key.line == 0) return place_of(value);
+  if (key.line == 0 || value.origin < 0) return place_of(value);
   return {source_->name(), key.line, key.column};
 }
 
@@ -429,7 +431,7 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
       // Keys of an object may be added; objects, and likely misspellings of objects, may not.
       const bool holds_names = k == 1 && (parts[0] == "bodies" || parts[0] == "joints" ||
                                           parts[0] == "loads" || parts[0] == "variables");
-      const bool may_add = !holds_names && (last || k == 0);
+      const bool may_add = !holds_names && (last || k == 0 || parts[0] == "import");
       if (!next && !may_add) {
         const std::vector<std::string> names = key_names(*node);
         diagnostics.add(place, path, format("{} has no entry {}", here, quote(part)),

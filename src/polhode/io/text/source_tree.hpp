@@ -25,7 +25,7 @@ struct SourceNode {
   Kind kind = Kind::kEmpty;
   bool in_quotes = false;    ///< The text was quoted or a block text.
   int line = 0, column = 0;  ///< 1-based; 0 in an override.
-  int origin = 0;            ///< 0: the file; k: override k (1-based).
+  int origin = 0;            ///< 0: the file; k: override k (1-based); −k: further file k.
   std::string text;
   std::vector<Key> keys;  ///< Of a map: key k belongs to child k.
   std::vector<SourceNode> children;
@@ -65,6 +65,10 @@ class SourceTree {
   /// @param value  As it would be written in the file.
   void apply_override(const std::string& path, const std::string& value, Diagnostics& diagnostics);
 
+  /// Adds the values of another file below those that stand here: maps are merged, and what is
+  /// given here is kept.
+  void add_below(SourceNode root, std::shared_ptr<const SourceText> source);
+
   /// Position of a node: in the file, or "--set path=value".
   [[nodiscard]] SourceLocation place_of(const SourceNode& node) const;
   [[nodiscard]] SourceLocation place_of(const SourceNode::Key& key, const SourceNode& value) const;
@@ -72,6 +76,7 @@ class SourceTree {
  private:
   std::shared_ptr<const SourceText> source_;
   std::deque<std::string> overrides_;
+  std::vector<std::shared_ptr<const SourceText>> further_;
   SourceNode root_;
 };
 

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/read/read_import.hpp>
+#include <polhode/model/whole_mass.hpp>
+#include <polhode/newton/rank_report.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "run_report.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+struct ImportCommand {
+  ModelArguments model;
+  bool report = false, json = false;
+};
+
+/// Notes of one kind, as JSON.
+nlohmann::ordered_json notes_json(const io::ImportReport& report, io::ImportNote::Kind kind) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const io::ImportNote& n : report.notes)
+    if (n.kind == kind)
+      list.push_back({{"file", n.place.file}, {"line", n.place.line}, {"what", n.what}});
+  return list;
+}
+
+nlohmann::ordered_json three_json(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
+
+nlohmann::ordered_json report_json(const io::ImportReport& report, const Simulation& simulation,
+                                   const RankReport& rank) {
+  const geometry::MassProperties whole = whole_mass(simulation.model());
+  const Mat3& J = whole.inertia;
+  using Kind = io::ImportNote::Kind;
+  return {{"format", report.format},
+          {"file", report.file},
+          {"bodies", simulation.model().bodies.size()},
+          {"moving_bodies", simulation.system().body_count()},
+          {"joints", simulation.model().joints.size()},
+          {"loops", loop_count(simulation.model())},
+          {"freedoms", rank.mobility},
+          {"mass", whole.mass},
+          {"center_of_mass", three_json(whole.com)},
+          {"inertia", {three_json(J.row(0)), three_json(J.row(1)), three_json(J.row(2))}},
+          {"constraint_rows", rank.rows},
+          {"redundant_rows", rank.redundant},
+          {"redundant", rank.names},
+          {"approximated", notes_json(report, Kind::approximated)},
+          {"ignored", notes_json(report, Kind::ignored)},
+          {"left_out", notes_json(report, Kind::left_out)}};
+}
+
+std::string three_numbers(const Vec3& x) {
+  return format("{:.9g} {:.9g} {:.9g}", x[0], x[1], x[2]);
+}
+
+std::string report_text(const io::ImportReport& report, const Simulation& simulation,
+                        const RankReport& rank) {
+  const geometry::MassProperties whole = whole_mass(simulation.model());
+  const Mat3& J = whole.inertia;
+  std::string text =
+      table({{"format", report.format},
+             {"bodies", format("{}", simulation.model().bodies.size()),
+              format("{} of them move", simulation.system().body_count())},
+             {"joints", format("{}", simulation.model().joints.size()),
+              counted(static_cast<std::size_t>(loop_count(simulation.model())), "loop", "loops")},
+             {"freedoms", format("{}", rank.mobility), "independent motions at the start"},
+             {"constraint rows", format("{}", rank.rows),
+              rank.redundant == 0
+                  ? "none redundant"
+                  : format("{} redundant, of {}", rank.redundant, name_list(rank.names, 12))},
+             {"mass", format("{:.12g}", whole.mass), "kg"},
+             {"centre of mass", three_numbers(whole.com), "m, at the start"},
+             {"inertia about it", three_numbers(J.diagonal()), "kg m^2, xx yy zz"},
+             {"", three_numbers({J(0, 1), J(0, 2), J(1, 2)}), "kg m^2, xy xz yz"}},
+            "", false);
+  using Kind = io::ImportNote::Kind;
+  for (const Kind kind : {Kind::left_out, Kind::approximated, Kind::ignored}) {
+    std::string list;
+    for (const io::ImportNote& n : report.notes)
+      if (n.kind == kind) list += format("  line {}: {}\n", n.place.line, n.what);
+    if (!list.empty()) text += format("\n{}:\n{}", io::word_of(kind), list);
+  }
+  return text;
+}
+
+int report_import(const ImportCommand& options) {
+  const io::ExpandedModel expanded =
+      io::expanded_model(options.model.file, options.model.overrides);
+  if (expanded.report.format.empty())
+    throw InputError("polhode import", quote(options.model.file) + " imports nothing",
+                     "Give a robot's file (.urdf, .xacro), or a model file with the key import");
+  const Simulation simulation(load_model(options.model));
+  const RankReport rank = rank_report(simulation.system(), simulation.state());
+  print(options.json ? report_json(expanded.report, simulation, rank).dump(2) + "\n"
+                     : report_text(expanded.report, simulation, rank));
+  return kOk;
+}
+
+}  // namespace
+
+Action add_import(CLI::App& command) {
+  const auto options = std::make_shared<ImportCommand>();
+  command
+      .add_option("FILE", options->model.file, "URDF or xacro file, or a model that imports one")
+      ->required();
+  command.add_flag("--report", options->report, "Print the report, which is the default");
+  command.add_flag("--json", options->json, "Print it as one JSON object");
+  add_set_option(command, options->model);
+  return [options] { return report_import(*options); };
+}
+
+}  // namespace polhode::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/import_model.hpp>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/importers/urdf.hpp>
+#include <polhode/io/importers/xacro.hpp>
+#include <polhode/io/text/file_error.hpp>
+
+namespace polhode::io {
+
+bool is_importable(const std::string& file) {
+  return file.ends_with(".urdf") || file.ends_with(".xacro");
+}
+
+Imported import_model(const ImportOptions& options, const std::string& folder) {
+  std::string text = options.file.ends_with(".xacro")
+                         ? expanded_by_xacro(options.file, options.arguments)
+                         : read_file(options.file);
+  return import_urdf(std::make_shared<SourceText>(options.file, std::move(text)), options, folder);
+}
+
+const char* word_of(ImportNote::Kind kind) {
+  switch (kind) {
+    case ImportNote::Kind::approximated:
+      return "approximated";
+    case ImportNote::Kind::left_out:
+      return "left out";
+    case ImportNote::Kind::ignored:
+      break;
+  }
+  return "ignored";
+}
+
+}  // namespace polhode::io

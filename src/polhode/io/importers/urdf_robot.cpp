@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/urdf_robot.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+
+namespace polhode::io {
+
+namespace {
+
+using Element = XmlFile::Element;
+
+/// Rotation by roll, pitch, yaw about fixed axes: Rz(yaw) Ry(pitch) Rx(roll).
+Mat3 rotation_of_rpy(const Vec3& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+/// Reader of one file; errors go to its diagnostics.
+class RobotReader {
+ public:
+  RobotReader(XmlFile& xml, std::vector<ImportNote>& notes) : xml_(xml), notes_(notes) {}
+
+  UrdfRobot read() {
+    const Element& root = xml_.root();
+    if (std::string_view(root.Name()) != "robot") {
+      xml_.fault(root, format("the file's tag is <{}>, not <robot>", root.Name()),
+                 "Give a URDF, which starts with <robot name=\"...\">.");
+      return {};
+    }
+    UrdfRobot robot;
+    robot.name = xml_.text(root, "name").value_or("");
+    ignore(root, {"version"});
+    for (const Element* e : xml_.children(root, "link")) read_link(*e, robot);
+    for (const Element* e : xml_.children(root, "joint")) read_joint(*e, robot);
+    for (const char* tag : {"loop_joint", "loop"})
+      for (const Element* e : xml_.children(root, tag)) read_loop(*e, robot);
+    if (const Element* e = root.FirstChildElement("constraint"))
+      xml_.fault(*e, "<constraint> has no meaning that is agreed on",
+                 "Write the constraint as a joint or load of an overlay.");
+    skip_all(root, {"material", "transmission", "gazebo", "sensor", "ros2_control", "constraint"});
+    if (robot.links.empty()) xml_.fault(root, "the robot has no link", "Add <link name=\"...\">.");
+    list_unread();
+    return robot;
+  }
+
+ private:
+  /// Attributes without influence on the motion.
+  void ignore(const Element& element, std::initializer_list<const char*> attributes) {
+    for (const char* a : attributes) static_cast<void>(xml_.text(element, a));
+  }
+
+  /// Ignores tags that have no influence on the motion, with a note for each kind.
+  void skip_all(const Element& parent, std::initializer_list<const char*> tags) {
+    for (const char* tag : tags) {
+      for (const Element* e : xml_.children(parent, tag)) {
+        xml_.skip(*e);
+        add_ignored(e->GetLineNum(), format("<{}> in <{}>", tag, parent.Name()),
+                    "has no influence on the motion");
+      }
+    }
+  }
+
+  void add_ignored(int line, const std::string& what, const std::string& why) {
+    const auto [found, is_new] = ignored_.emplace(what, notes_.size());
+    if (is_new) {
+      notes_.push_back({ImportNote::Kind::ignored, xml_.place(line), what + " " + why});
+      times_[what] = {1, why};
+      return;
+    }
+    auto& [count, reason] = times_[what];
+    notes_[found->second].what = format("{} {} ({} times)", what, reason, ++count);
+  }
+
+  void list_unread() {
+    for (const XmlFile::Unread& u : xml_.unread()) add_ignored(u.line, u.what, "is unknown");
+  }
+
+  Pose read_origin(const Element& parent) {
+    const Element* e = xml_.child(parent, "origin");
+    return e == nullptr ? Pose{} : read_pose(*e);
+  }
+
+  Pose read_pose(const Element& e) {
+    Pose pose;
+    if (const auto p = xml_.vector(e, "xyz")) pose.p = *p;
+    if (const auto rpy = xml_.vector(e, "rpy")) pose.R = rotation_of_rpy(*rpy);
+    return pose;
+  }
+
+  void read_link(const Element& e, UrdfRobot& robot) {
+    UrdfLink link;
+    link.name = xml_.required_text(e, "name");
+    link.at = &e;
+    ignore(e, {"type"});
+    if (!link.name.empty() && !links_.insert(link.name).second)
+      xml_.fault(e, format("the link {} stands twice", quote(link.name)), "Rename one of them.");
+    if (const Element* inertial = xml_.child(e, "inertial")) read_inertial(*inertial, link);
+    for (const char* tag : {"visual", "collision"})
+      for (const Element* shape : xml_.children(e, tag))
+        read_shape(*shape, tag == std::string_view("visual") ? link.visual : link.collision);
+    skip_all(e, {"self_collision_checking", "contact", "sensor", "gazebo"});
+    robot.links.push_back(std::move(link));
+  }
+
+  void read_inertial(const Element& e, UrdfLink& link) {
+    const Element* mass = xml_.child(e, "mass");
+    const Element* inertia = xml_.child(e, "inertia");
+    const Pose pose = read_origin(e);
+    link.has_inertial = true;
+    link.mass.com = pose.p;
+    if (mass == nullptr) {
+      xml_.fault(e, format("the inertial of {} has no <mass>", quote(link.name)),
+                 "Write <mass value=\"...\"/>.");
+    } else {
+      const auto value = xml_.number(*mass, "value");
+      link.mass.mass = value.value_or(0.0);
+      if (!value && mass->Attribute("value") == nullptr)
+        xml_.fault(*mass, "<mass> has no 'value'", "Write <mass value=\"...\"/>.");
+      if (link.mass.mass < 0.0)
+        xml_.fault(*mass, format("the mass of {} is {}", quote(link.name), link.mass.mass),
+                   "Give a mass that is not negative.");
+    }
+    if (inertia == nullptr) return;
+    const auto entry = [&](const char* name) { return xml_.number(*inertia, name).value_or(0.0); };
+    Mat3 J;
+    J(0, 0) = entry("ixx");
+    J(1, 1) = entry("iyy");
+    J(2, 2) = entry("izz");
+    J(0, 1) = J(1, 0) = entry("ixy");
+    J(0, 2) = J(2, 0) = entry("ixz");
+    J(1, 2) = J(2, 1) = entry("iyz");
+    const Mat3 turned = pose.R * J * pose.R.transpose();
+    link.mass.inertia = pose.R.isIdentity(0.0) ? J : Mat3(0.5 * (turned + turned.transpose()));
+  }
+
+  void read_shape(const Element& e, std::vector<UrdfShape>& shapes) {
+    UrdfShape shape;
+    shape.at = &e;
+    shape.pose = read_origin(e);
+    ignore(e, {"name"});
+    skip_all(e, {"material", "verbose", "contact_coefficients"});
+    const Element* geometry = xml_.child(e, "geometry");
+    if (geometry == nullptr) {
+      xml_.fault(e, format("<{}> has no <geometry>", e.Name()), "Add it, or leave the tag out.");
+      return;
+    }
+    if (read_geometry(*geometry, shape)) shapes.push_back(std::move(shape));
+  }
+
+  /// Number that must be there and positive; 0 after an error.
+  double length(const Element& e, const char* attribute) {
+    const auto value = xml_.number(e, attribute);
+    if (value && *value > 0.0) return *value;
+    if (value || e.Attribute(attribute) == nullptr)
+      xml_.fault(e,
+                 format("'{}' of <{}> must be above 0, but is {}", attribute, e.Name(),
+                        value ? format("{}", *value) : "missing"),
+                 "Give a length [m].");
+    return 0.0;
+  }
+
+  bool read_geometry(const Element& e, UrdfShape& shape) {
+    if (const Element* box = xml_.child(e, "box")) {
+      shape.kind = "box";
+      const auto size = xml_.vector(*box, "size");
+      if (size && size->minCoeff() > 0.0)
+        shape.sizes = {size->x(), size->y(), size->z()};
+      else if (size || box->Attribute("size") == nullptr)
+        xml_.fault(*box, "the size of <box> must be three numbers above 0",
+                   "Write <box size=\"x y z\"/>.");
+    } else if (const Element* ball = xml_.child(e, "sphere")) {
+      shape.kind = "sphere";
+      shape.sizes = {2.0 * length(*ball, "radius")};
+    } else if (const Element* bar = xml_.child(e, "cylinder")) {
+      shape.kind = "cylinder";
+      shape.sizes = {2.0 * length(*bar, "radius"), length(*bar, "length")};
+    } else if (const Element* pill = xml_.child(e, "capsule")) {
+      shape.kind = "capsule";  // The length in a URDF is without the hemispheres.
+      const double radius = length(*pill, "radius");
+      shape.sizes = {2.0 * radius, length(*pill, "length") + 2.0 * radius};
+    } else if (const Element* mesh = xml_.child(e, "mesh")) {
+      shape.kind = "mesh";
+      shape.file = xml_.required_text(*mesh, "filename");
+      if (const auto scale = xml_.vector(*mesh, "scale")) shape.scale = *scale;
+      return !shape.file.empty();
+    } else {
+      return false;  // Unknown ones are listed as unread.
+    }
+    return std::all_of(shape.sizes.begin(), shape.sizes.end(), [](double s) { return s > 0.0; }) &&
+           !shape.sizes.empty();
+  }
+
+  Vec3 read_axis(const Element& parent) {
+    const Element* e = xml_.child(parent, "axis");
+    if (e == nullptr) return Vec3::UnitX();
+    const auto axis = xml_.vector(*e, "xyz");
+    if (!axis) return Vec3::UnitX();
+    if (axis->norm() > 0.0) return axis->normalized();
+    xml_.fault(*e, "the axis has no length", "Give a direction, such as xyz=\"0 0 1\".");
+    return Vec3::UnitX();
+  }
+
+  void read_joint(const Element& e, UrdfRobot& robot) {
+    UrdfJoint joint;
+    joint.at = &e;
+    joint.name = xml_.required_text(e, "name");
+    joint.type = xml_.required_text(e, "type");
+    if (!joint.name.empty() && !joints_.insert(joint.name).second)
+      xml_.fault(e, format("the joint {} stands twice", quote(joint.name)), "Rename one of them.");
+    static const std::vector<std::string> types{"revolute", "continuous", "prismatic",
+                                                "fixed",    "floating",   "planar"};
+    if (!joint.type.empty() && std::find(types.begin(), types.end(), joint.type) == types.end())
+      xml_.fault(
+          e, format("the joint {} has the unknown type {}", quote(joint.name), quote(joint.type)),
+          did_you_mean(joint.type, types) + "Types: " + name_list(types) + ".");
+    const auto link_of = [&](const char* tag) {
+      const Element* link = xml_.child(e, tag);
+      if (link != nullptr) return xml_.required_text(*link, "link");
+      xml_.fault(e, format("the joint {} has no <{}>", quote(joint.name), tag),
+                 format("Write <{} link=\"...\"/>.", tag));
+      return std::string();
+    };
+    joint.parent = link_of("parent");
+    joint.child = link_of("child");
+    joint.origin = read_origin(e);
+    joint.axis = read_axis(e);
+    read_limit(e, joint);
+    if (const Element* dynamics = xml_.child(e, "dynamics")) {
+      joint.damping = not_negative(*dynamics, "damping");
+      joint.friction = not_negative(*dynamics, "friction");
+    }
+    if (const Element* mimic = xml_.child(e, "mimic")) read_mimic(*mimic, joint);
+    skip_all(e, {"calibration", "safety_controller", "gazebo", "hardwareInterface"});
+    robot.joints.push_back(std::move(joint));
+  }
+
+  double not_negative(const Element& e, const char* attribute) {
+    const double value = xml_.number(e, attribute).value_or(0.0);
+    if (value < 0.0)
+      xml_.fault(e, format("'{}' of <{}> is {}", attribute, e.Name(), value),
+                 "Give a value that is not negative.");
+    return std::max(0.0, value);
+  }
+
+  void read_limit(const Element& e, UrdfJoint& joint) {
+    const Element* limit = xml_.child(e, "limit");
+    if (limit == nullptr) return;
+    for (const char* unused : {"effort", "velocity", "acceleration", "deceleration", "jerk"})
+      if (xml_.text(*limit, unused))
+        add_ignored(limit->GetLineNum(), format("attribute '{}' of <limit>", unused),
+                    "limits an actuator, and there is none");
+    const auto lower = xml_.number(*limit, "lower"), upper = xml_.number(*limit, "upper");
+    if (joint.type != "revolute" && joint.type != "prismatic") return;
+    if (!lower && !upper) return;
+    const double low = lower.value_or(0.0), high = upper.value_or(0.0);
+    if (low < high) {
+      joint.lower = low;
+      joint.upper = high;
+    } else if (low > high) {
+      xml_.fault(*limit,
+                 format("the joint {} has the limits {} to {}", quote(joint.name), low, high),
+                 "Give a lower limit below the upper one, or type=\"fixed\".");
+    } else {
+      notes_.push_back(
+          {ImportNote::Kind::approximated, xml_.place(*limit),
+           format("the joint {} has both limits at {}: it has no stops", quote(joint.name), low)});
+    }
+  }
+
+  void read_mimic(const Element& e, UrdfJoint& joint) {
+    UrdfMimic mimic;
+    mimic.at = &e;
+    mimic.joint = xml_.required_text(e, "joint");
+    mimic.multiplier = xml_.number(e, "multiplier").value_or(1.0);
+    mimic.offset = xml_.number(e, "offset").value_or(0.0);
+    if (!mimic.joint.empty()) joint.mimic = mimic;
+  }
+
+  void read_loop(const Element& e, UrdfRobot& robot) {
+    UrdfLoop loop;
+    loop.at = &e;
+    loop.name = xml_.required_text(e, "name");
+    loop.type = xml_.required_text(e, "type");
+    if (!loop.name.empty() && !joints_.insert(loop.name).second)
+      xml_.fault(e, format("the joint {} stands twice", quote(loop.name)), "Rename one of them.");
+    static const std::vector<std::string> types{"revolute",  "continuous",  "prismatic", "fixed",
+                                                "spherical", "cylindrical", "planar"};
+    if (!loop.type.empty() && std::find(types.begin(), types.end(), loop.type) == types.end())
+      xml_.fault(e, format("<{}> has the unknown type {}", e.Name(), quote(loop.type)),
+                 did_you_mean(loop.type, types) + "Types: " + name_list(types) + ".");
+    const bool pair = std::string_view(e.Name()) == "loop_joint";
+    const char* tags[2] = {pair ? "link1" : "predecessor", pair ? "link2" : "successor"};
+    for (int k = 0; k < 2; ++k) {
+      const Element* link = xml_.child(e, tags[k]);
+      if (link == nullptr) {
+        xml_.fault(e, format("<{}> has no <{}>", e.Name(), tags[k]),
+                   format("Write <{} link=\"...\" xyz=\"...\" rpy=\"...\"/>.", tags[k]));
+        continue;
+      }
+      loop.links[k] = xml_.required_text(*link, "link");
+      const Element* origin = xml_.child(*link, "origin");
+      loop.frames[k] = read_pose(origin != nullptr ? *origin : *link);
+    }
+    loop.axis = read_axis(e);
+    robot.loops.push_back(std::move(loop));
+  }
+
+  XmlFile& xml_;
+  std::vector<ImportNote>& notes_;
+  std::set<std::string> links_, joints_;
+  std::map<std::string, std::size_t> ignored_;                  ///< Index of the note.
+  std::map<std::string, std::pair<int, std::string>> times_{};  ///< How often, and why.
+};
+
+}  // namespace
+
+Mat3 axes_along(const Vec3& z) {
+  int least = 0;
+  z.cwiseAbs().minCoeff(&least);
+  const Vec3 x = Vec3::Unit(least);
+  Mat3 F;
+  F.col(2) = z;
+  F.col(0) = (x - x.dot(z) * z).normalized();
+  F.col(1) = z.cross(F.col(0));
+  return F;
+}
+
+UrdfRobot read_urdf_robot(XmlFile& xml, std::vector<ImportNote>& notes) {
+  return RobotReader(xml, notes).read();
+}
+
+}  // namespace polhode::io

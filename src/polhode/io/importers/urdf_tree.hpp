@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <polhode/io/importers/urdf_robot.hpp>
+
+namespace polhode::io {
+
+/// The links and joints of a robot as a tree, with its start and the links that form one body.
+struct UrdfTree {
+  int root = -1;
+  std::vector<int> order;          ///< Links, parents first.
+  std::vector<int> parent_joint;   ///< Of each link; −1: the root.
+  std::vector<int> parent, child;  ///< Links of each joint.
+  std::unordered_map<std::string, int> link_index, joint_index;
+  std::vector<std::vector<double>> start;  ///< Coordinates of each joint [rad, m].
+  std::vector<Pose> world;                 ///< Frame of each link at the start.
+  std::vector<bool> held;                  ///< Joints that do not move although their type does.
+  std::vector<bool> grounded;              ///< Links that never move.
+  std::vector<int> body;  ///< Link whose body each link belongs to; its own: it is one.
+  /// Of each link that is a body, in its axes.
+  std::vector<geometry::MassProperties> mass;
+};
+
+/// Arranges a robot. Errors go to the file's diagnostics, and then the tree is incomplete.
+/// @returns whether there was none.
+[[nodiscard]] bool arrange(const UrdfRobot& robot, const ImportOptions& options, XmlFile& xml,
+                           Diagnostics& diagnostics, std::vector<ImportNote>& notes,
+                           UrdfTree& tree);
+
+}  // namespace polhode::io

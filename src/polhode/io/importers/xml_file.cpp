@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/xml_file.hpp>
+
+#include <charconv>
+#include <cmath>
+
+#include <polhode/core/format.hpp>
+
+namespace polhode::io {
+
+namespace {
+
+constexpr const char* kBlanks = " \t\r\n";
+
+/// A finite number that is the whole text; nothing otherwise.
+std::optional<double> number_of(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') || (text.starts_with('-') && text.substr(1).starts_with('+')))
+    return std::nullopt;
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+/// Whether a document type has declarations of entities.
+bool declares_entities(std::string_view text) {
+  return text.find("<!ENTITY") != std::string_view::npos;
+}
+
+}  // namespace
+
+XmlFile::XmlFile(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics)
+    : source_(std::move(source)),
+      diagnostics_(diagnostics),
+      document_(std::make_unique<tinyxml2::XMLDocument>()) {
+  const std::string& text = source_->text();
+  const auto refuse = [&](int line, std::string what, std::string hint) {
+    diagnostics_.add(place(line), "", std::move(what), std::move(hint));
+    diagnostics_.throw_if_any();
+  };
+  if (text.size() > kMostXmlBytes)
+    refuse(1, format("the file has {} bytes, more than {}", text.size(), kMostXmlBytes),
+           "Build a model of this size in code.");
+  if (text.find_first_not_of(kBlanks) == std::string::npos)
+    refuse(0, "the file is empty", "Give a file with a model.");
+  if (declares_entities(text)) {
+    const auto at = static_cast<std::ptrdiff_t>(text.find("<!ENTITY"));
+    refuse(1 + static_cast<int>(std::count(text.begin(), text.begin() + at, '\n')),
+           "declarations of entities are not allowed", "Write the text out where it is used.");
+  }
+  if (text.find('\0') != std::string::npos || !is_utf8(text))
+    refuse(1, "the text is not UTF-8", "Save the file as UTF-8.");
+  if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    const bool deep = document_->ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED;
+    std::string name = tinyxml2::XMLDocument::ErrorIDToName(document_->ErrorID());
+    for (char& c : name) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));
+    if (name.starts_with("xml error ")) name.erase(0, 10);
+    refuse(std::max(1, document_->ErrorLineNum()),
+           deep ? format("tags are nested more than {} deep", TINYXML2_MAX_ELEMENT_DEPTH)
+                : "the text is not XML: " + name,
+           deep
+               ? "No model needs that; look for a tag that is not closed."
+               : "Check the tag here and those above: each must be closed, and the file complete.");
+  }
+  root_ = document_->RootElement();
+  if (root_ == nullptr) refuse(1, "the file has no tag", "Give a file with a model.");
+  read_.insert(root_);
+}
+
+SourceLocation XmlFile::place(int line) const {
+  const std::string_view text = source_->line(line);
+  const std::size_t column = text.find_first_not_of(kBlanks);
+  return {source_->name(), line,
+          line == 0 ? 0 : 1 + static_cast<int>(column == std::string_view::npos ? 0 : column)};
+}
+
+void XmlFile::fault(const Element& element, std::string what, std::string hint) {
+  diagnostics_.add(place(element), "", std::move(what), std::move(hint));
+}
+
+const XmlFile::Element* XmlFile::child(const Element& parent, const char* name) {
+  const Element* found = parent.FirstChildElement(name);
+  if (found != nullptr) read_.insert(found);
+  return found;
+}
+
+std::vector<const XmlFile::Element*> XmlFile::children(const Element& parent, const char* name) {
+  std::vector<const Element*> list;
+  for (const Element* e = parent.FirstChildElement(name); e != nullptr;
+       e = e->NextSiblingElement(name)) {
+    read_.insert(e);
+    list.push_back(e);
+  }
+  return list;
+}
+
+void XmlFile::skip(const Element& element) {
+  read_.insert(&element);
+  for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) read_.insert(a);
+  for (const Element* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    skip(*e);
+}
+
+std::optional<std::string> XmlFile::text(const Element& element, const char* attribute) {
+  const tinyxml2::XMLAttribute* found = element.FindAttribute(attribute);
+  if (found == nullptr) return std::nullopt;
+  read_.insert(found);
+  return found->Value();
+}
+
+std::string XmlFile::required_text(const Element& element, const char* attribute) {
+  const auto value = text(element, attribute);
+  if (!value || value->empty())
+    fault(element, format("<{}> has no '{}'", element.Name(), attribute),
+          format("Write <{} {}=\"...\"/>.", element.Name(), attribute));
+  return value.value_or("");
+}
+
+std::optional<std::vector<double>> XmlFile::numbers(const Element& element, const char* attribute,
+                                                    std::size_t count) {
+  const auto value = text(element, attribute);
+  if (!value) return std::nullopt;
+  std::vector<double> list;
+  std::string_view rest = *value;
+  bool sound = true;
+  while (sound && rest.find_first_not_of(kBlanks) != std::string_view::npos) {
+    rest.remove_prefix(rest.find_first_not_of(kBlanks));
+    const std::size_t end = std::min(rest.find_first_of(kBlanks), rest.size());
+    const auto number = number_of(rest.substr(0, end));
+    sound = number.has_value();
+    if (sound) list.push_back(*number);
+    rest.remove_prefix(end);
+  }
+  if (sound && list.size() == count) return list;
+  fault(element,
+        format("'{}' of <{}> is {}, not {}", attribute, element.Name(), quote(*value),
+               count == 1 ? std::string("a number") : format("{} numbers", count)),
+        count == 1 ? "Give a finite number." : format("Give {} finite numbers.", count));
+  return std::nullopt;
+}
+
+std::optional<double> XmlFile::number(const Element& element, const char* attribute) {
+  const auto list = numbers(element, attribute, 1);
+  return list ? std::optional((*list)[0]) : std::nullopt;
+}
+
+std::optional<Vec3> XmlFile::vector(const Element& element, const char* attribute) {
+  const auto list = numbers(element, attribute, 3);
+  return list ? std::optional(Vec3((*list)[0], (*list)[1], (*list)[2])) : std::nullopt;
+}
+
+void XmlFile::list_unread(const Element& element, std::vector<Unread>& list) const {
+  for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
+    if (!read_.contains(a) && !std::string_view(a->Name()).starts_with("xmlns"))
+      list.push_back(
+          {element.GetLineNum(), format("attribute {} of <{}>", quote(a->Name()), element.Name())});
+  for (const Element* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    if (read_.contains(e))
+      list_unread(*e, list);
+    else
+      list.push_back({e->GetLineNum(), format("<{}> in <{}>", e->Name(), element.Name())});
+  }
+}
+
+std::vector<XmlFile::Unread> XmlFile::unread() const {
+  std::vector<Unread> list;
+  list_unread(*root_, list);
+  return list;
+}
+
+}  // namespace polhode::io
