@@ -85,8 +85,9 @@ TEST_F(CommandLine, ReportsDamagedResults) {
       const auto result = run(command);
       EXPECT_TRUE(result.code == 0 || result.code == 3 || result.code == 5)
           << command[0] << " " << part << "/8: " << result.code << " " << result.err;
-      if (result.code == 0)
+      if (result.code == 0) {
         EXPECT_THAT(result.err, HasSubstr("bad.h5 is cut short: only ")) << command[0];
+      }
     }
   }
 }
