@@ -257,7 +257,7 @@ class WrongContacts final : public BodyContacts {
   Work commit(State&, std::span<const BodyStep>, const StepContext&) override { return {}; }
   bool touched() const override { return true; }
   Work impacts(State&, std::vector<PairImpact>&) override { return {}; }
-  void settled(std::span<const ResolvedImpact>) override {}
+  void settled(State&, std::span<const ResolvedImpact>) override {}
   std::string tightest() const override { return {}; }
 
  private:

@@ -10,6 +10,7 @@ import incline
 import motions
 import published_statics
 import rest
+import rigid_rows
 import scenes
 import several_contacts
 import stops
@@ -17,7 +18,7 @@ import stresses
 import surfaces
 import validation_models
 
-MODULES = (central_impacts, deformables, eccentric_impacts, examples_in_motion, examples_with_contact, flat, incline, motions, published_statics, rest, scenes, several_contacts, stops,
+MODULES = (central_impacts, deformables, eccentric_impacts, examples_in_motion, examples_with_contact, flat, incline, motions, published_statics, rest, rigid_rows, scenes, several_contacts, stops,
            stresses, surfaces, validation_models)
 ALL = [case for module in MODULES for case in module.CASES]
 CASES = [case for case in ALL if not case.open]

@@ -41,7 +41,7 @@ class Stated final : public BodyContacts {
          lasting.erase(lasting.begin()))
       rows.push_back(lasting.front());
   }
-  void settled(std::span<const ResolvedImpact> impacts) override {
+  void settled(State&, std::span<const ResolvedImpact> impacts) override {
     done.assign(impacts.begin(), impacts.end());
   }
   std::string tightest() const override { return {}; }

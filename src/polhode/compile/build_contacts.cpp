@@ -114,7 +114,7 @@ class ContactsBuilder {
 
   void add_laws() {
     set_->set_default(contact_law(spec_.standard));
-    if (spec_.nonsmooth()) set_->set_impulses(impulse_options(spec_));
+    if (spec_.nonsmooth() || spec_.rigid()) set_->set_impulses(impulse_options(spec_));
     for (const auto& [x, i] : classes_)
       for (const auto& [y, j] : classes_)
         if (i <= j) set_->set_law(i, j, law_of(x, y));
@@ -257,6 +257,7 @@ void check_sides(const Model& model, std::vector<InputError>& faults) {
 void check_contact_shapes(const Model& model, std::vector<InputError>& faults) {
   check_sides(model, faults);
   check_nonsmooth(model, faults);
+  check_rigid(model, faults);
   for (const BodySpec& body : model.bodies)
     for (std::size_t s = 0; s < body.shapes.size(); ++s) {
       if (!contact_side(body, s).touches) continue;
@@ -280,6 +281,7 @@ std::shared_ptr<contact::ContactSet> build_contacts(const Model& model,
   std::vector<InputError> faults;
   check_sides(model, faults);
   check_nonsmooth(model, faults);
+  check_rigid(model, faults);
   if (!faults.empty()) throw InputError(faults.front());
   return ContactsBuilder(model, bodies, map).build();
 }

@@ -6,6 +6,7 @@ namespace polhode {
 
 ImpulseOptions impulse_options(const ContactsSpec& contacts) {
   ImpulseOptions options;
+  options.rigid = contacts.rigid();
   if (contacts.sweeps > 0) options.sweeps = contacts.sweeps;
   if (contacts.sweep_tolerance > 0.0) options.tolerance = contacts.sweep_tolerance;
   return options;
@@ -46,6 +47,26 @@ void check_nonsmooth(const Model& model, std::vector<InputError>& faults) {
   if (a.solver != "automatic")
     refuse("analysis.solver", format("is {}, but the non-smooth law has its own solver", a.solver),
            "use solver: automatic");
+}
+
+void check_rigid(const Model& model, std::vector<InputError>& faults) {
+  if (!model.contacts.rigid()) return;
+  const auto refuse = [&](const std::string& where, const std::string& what, const char* hint) {
+    faults.emplace_back(where, what, hint);
+  };
+  if (!model.solids.empty() || !model.cables.empty())
+    refuse("contacts.default.law", "rigid is not available with deformable solids and cables yet",
+           "Use law: barrier in this model");
+  const AnalysisSpec& a = model.analysis;
+  if (a.type != "dynamics") return;
+  if (a.rho_inf != 1.0)
+    refuse("analysis.rho_inf",
+           format("is {:g}, but the law rigid uses the midpoint rule", a.rho_inf),
+           "Use rho_inf: 1, or law: barrier");
+  if (a.momentum_rate != "momentum")
+    refuse("analysis.momentum_rate",
+           format("is {}, but the law rigid uses the momentum form", a.momentum_rate),
+           "Use momentum_rate: momentum, or law: barrier");
 }
 
 }  // namespace polhode

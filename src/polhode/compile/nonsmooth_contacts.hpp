@@ -9,12 +9,14 @@
 
 namespace polhode {
 
-/// Options of the non-smooth law, including defaults.
+/// Options of the laws of all pairs, including defaults.
 [[nodiscard]] ImpulseOptions impulse_options(const ContactsSpec& contacts);
 
 /// Checks that a model with the non-smooth law has no unsupported objects: joints, solids, beams,
 /// cables, automatic steps, numerical damping. Objects unsupported by all contacts are checked
 /// elsewhere.
 void check_nonsmooth(const Model& model, std::vector<InputError>& faults);
+/// Likewise with contacts that are rows of the step: solids, cables, numerical damping.
+void check_rigid(const Model& model, std::vector<InputError>& faults);
 
 }  // namespace polhode

@@ -35,6 +35,12 @@ struct ImpulseRecord {
   double impulse[3], turning[3];
 };
 
+/// A point that is a row.
+struct RowRecord {
+  ImpulseRecord impulses;
+  double closed, slips;
+};
+
 /// The record behind others.
 template <HistoryRecord R>
 void append(std::vector<double>& out, const R& record) {
@@ -75,7 +81,10 @@ void ContactSet::save(State& state) {
       record.pair = record_of(p.a, p.b, p.data.pair);
       set(record.impulse, h.impulse);
       set(record.turning, h.turning);
-      append(out, record);
+      if (acts_by_rows())
+        append(out, RowRecord{record, h.closed ? 1.0 : 0.0, h.slips ? 1.0 : 0.0});
+      else
+        append(out, record);
       continue;
     }
     PointRecord record;
@@ -116,7 +125,9 @@ void ContactSet::check_memory(const State& state, const std::string& where) cons
   const std::size_t head = 2 + static_cast<std::size_t>(in[0]) + switches_.size();
   if (in.size() == head) return;
   const std::size_t points = head + kNumbersOf<ReferenceRecord> * references_.size();
-  const std::size_t count = impulses_ ? kNumbersOf<ImpulseRecord> : kNumbersOf<PointRecord>;
+  const std::size_t count = acts_by_rows() ? kNumbersOf<RowRecord>
+                            : impulses_    ? kNumbersOf<ImpulseRecord>
+                                           : kNumbersOf<PointRecord>;
   require(in.size() >= points && (in.size() - points) % count == 0);
   require(std::all_of(in.begin() + static_cast<std::ptrdiff_t>(head),
                       in.begin() + static_cast<std::ptrdiff_t>(points),
@@ -158,7 +169,9 @@ void ContactSet::load(const State& state) {
     references_[k].margin = record.margin;
   }
   // Points that carry only their histories: find_candidates() hands these on.
-  const std::size_t count = impulses_ ? kNumbersOf<ImpulseRecord> : kNumbersOf<PointRecord>;
+  const std::size_t count = acts_by_rows() ? kNumbersOf<RowRecord>
+                            : impulses_    ? kNumbersOf<ImpulseRecord>
+                                           : kNumbersOf<PointRecord>;
   for (std::size_t at = references; at + count <= in.size(); at += count) {
     const double* here = in.data() + at;
     const auto pair = read_record<PairRecord>(here);
@@ -171,6 +184,11 @@ void ContactSet::load(const State& state) {
       const auto record = read_record<ImpulseRecord>(here);
       h.impulse = Vec3(record.impulse);
       h.turning = Vec3(record.turning);
+      if (acts_by_rows()) {
+        const auto row = read_record<RowRecord>(here);
+        h.closed = row.closed != 0.0;
+        h.slips = row.slips != 0.0;
+      }
       points_.push_back(p);
       continue;
     }

@@ -255,7 +255,7 @@ void ContactSet::open_or_close(Point& p, SpherePairCache& balls, std::span<const
     c = value(g.point);
     n = value(g.normal);
   }
-  if (h.closed) p.gap_n = h.gap;
+  if (h.closed && !impulses_) p.gap_n = h.gap;
   balls.gap_n = p.gap_n;
   p.normal_n = n;
   p.place_n = c;

@@ -140,16 +140,19 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   Work impacts(State& state, std::vector<PairImpact>& list) override;
   void resting(const State& state, std::span<const int> bodies,
                std::vector<PairImpact>& list) override;
-  void settled(std::span<const ResolvedImpact> impacts) override;
+  void settled(State& state, std::span<const ResolvedImpact> impacts) override;
   std::string tightest() const override;
 
   const ImpulseOptions* impulses() const override { return impulses_ ? &*impulses_ : nullptr; }
+  double touching_gap() const override;
   bool covers(std::span<const BodyStep> steps) const override;
   int find_points(std::span<const BodyStep> steps, const StepContext& context,
                   std::vector<ImpulsePoint>& list) override;
   void place_points(std::span<const BodyStep> steps, std::span<ImpulsePoint> list) const override;
   [[nodiscard]] double gap_after(std::span<const BodyStep> steps,
                                  const ImpulsePoint& point) const override;
+  [[nodiscard]] std::pair<Vec3, Vec3> direction_after(std::span<const BodyStep> steps,
+                                                      const ImpulsePoint& point) const override;
   [[nodiscard]] std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const override;
   Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
@@ -189,6 +192,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
     double speed_n = 0.0;        ///< Along the normal at the start of the step [m/s].
     double impact_loss = 0.0;    ///< Of normal impulses [J].
     double friction_loss = 0.0;  ///< Of friction impulses [J].
+    double absorbed = 0.0;       ///< Of a row: work of its normal impulse in the step [J].
+    double gap_after = 0.0;      ///< Of a row, at the end of the step [m].
   };
   /// Sliding state of a point at the last iterate.
   struct Slide {
@@ -219,6 +224,12 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   void damp_load(Point& p) const;
   void begin_phase(Point& p, double speed, double dt) const;
   [[nodiscard]] PairImpact row_at(const Point& p, const State& state) const;
+  /// Whether contacts are rows of the step.
+  [[nodiscard]] bool acts_by_rows() const { return impulses_ && impulses_->rigid; }
+  /// Whether a row touches at t_{n+1}.
+  [[nodiscard]] bool touches(const Point& p) const { return p.gap_after <= touching_gap(); }
+  void find_rows(State& state, std::vector<PairImpact>& list);
+  void close_rows(State& state, std::span<const ResolvedImpact> impacts);
   [[nodiscard]] double weight_now(const Point& p, const State& state) const;
   [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, Work& work);
   struct Followed;
@@ -311,7 +322,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   std::vector<Slide> slides_;                        ///< By point.
   bool renewed_ = true;                              ///< The points have changed since then.
   std::vector<Participants> pairs_;
-  std::vector<int> settling_;  ///< Resting points near the impacts listed last.
+  std::vector<int> settling_;  ///< Rows, or resting points near the impacts listed last.
   double step_length_ = 0.0;   ///< Of the last committed step [s].
   /// Longest step so far: choices that depend on the step are kept when a step is cut [s].
   double longest_step_ = 0.0;

@@ -292,6 +292,10 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
 Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
   settling_.clear();
   Work work;
+  if (acts_by_rows()) {
+    find_rows(state, list);
+    return work;
+  }
   bool remembered = false;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
@@ -308,6 +312,7 @@ Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
 
 void ContactSet::resting(const State& state, std::span<const int> bodies,
                          std::vector<PairImpact>& list) {
+  if (impulses_) return;
   std::vector<char> listed(points_.size(), 0);
   for (int i : settling_) listed[i] = 1;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
@@ -330,7 +335,7 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
 }
 
 /// Adds the impulses at the end of the step to its reported forces.
-void ContactSet::settled(std::span<const ResolvedImpact> impacts) {
+void ContactSet::settled(State& state, std::span<const ResolvedImpact> impacts) {
   for (std::size_t k = 0; k < settling_.size(); ++k) {
     Point& p = points_[settling_[k]];
     const ResolvedImpact& s = impacts[k];
@@ -344,6 +349,7 @@ void ContactSet::settled(std::span<const ResolvedImpact> impacts) {
     r.friction_force += s.friction / step_length_;
     r.force += (s.normal * r.normal + s.friction) / step_length_;
   }
+  if (acts_by_rows()) close_rows(state, impacts);
 }
 
 }  // namespace polhode::contact

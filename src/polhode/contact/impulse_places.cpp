@@ -115,7 +115,8 @@ std::optional<double> ContactSet::gap_at_end_of(const ImpulsePoint& at,
                                                 std::span<const BodyStep> steps) const {
   const Point& p = points_[at.number];
   const BodyStep &a = steps[balls_[at.number].a], &b = steps[balls_[at.number].b];
-  if (p.data.pair.kind == GapKind::rim_edge) {
+  if (p.data.pair.kind == GapKind::rim_edge ||
+      (p.data.pair.kind == GapKind::edge_edge && acts_by_rows())) {
     const BothPlaced end = BothPlaced::at_end(a, b);
     const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, end.a, end.b);
     // Behind each other the distance of the curves grows again.

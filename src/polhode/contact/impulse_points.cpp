@@ -165,7 +165,17 @@ ImpulsePoint ContactSet::impulse_point(int point, const Gap<double>& at,
   made.rate = made.normal.dot(made.velocity);
   made.restitution = p.restitution;
   const FrictionLaw& f = p.data.friction;
-  made.friction = f.mu;
+  made.friction = made.friction_across = f.mu;
+  if (acts_by_rows()) {
+    // At the start there is no history: what does not move sticks.
+    const bool still =
+        (made.velocity - made.rate * made.normal).norm() * longest_step_ < touching_gap();
+    const bool sticks = p.data.history.closed ? !p.data.history.slips : still;
+    if (f.mu_across > 0.0) made.friction_across = f.mu_across;
+    if (sticks && f.mu_static > f.mu && made.friction_across == f.mu)
+      made.friction = made.friction_across = f.mu_static;
+    made.along = a.Lambda_n * f.direction;
+  }
   made.rolling = f.rolling;
   made.torsion = f.torsion;
   made.size = std::min(p.data.a->detail, p.data.b->detail);
@@ -176,6 +186,8 @@ ImpulsePoint ContactSet::impulse_point(int point, const Gap<double>& at,
 /// Whether a point would approach faster than contact allows if it did not act.
 bool ContactSet::must_act(const ImpulsePoint& at, const BodyStep& a, const BodyStep& b,
                           double dt) const {
+  if (acts_by_rows())
+    return at.gap <= touching_gap() || at.gap + at.normal.dot(apart(a, b, at.place)) < 0.0;
   const double slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
   const Vec3& n = at.normal;
   // Either of both bodies may be stopped by another contact.
@@ -210,10 +222,11 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     if (is_of_edges(p.data.pair.kind)) {
       if (!acted && least_gap_at_end(p, a, b) > 0.0) continue;
       at = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
-      if (!correct_edges(p.data, a, b, at)) continue;
+      if (!acts_by_rows() && !correct_edges(p.data, a, b, at)) continue;
     }
     ImpulsePoint point = impulse_point(i, at, steps);
-    if (!acted && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
+    const bool enters = acts_by_rows() && gap_at_end(i, a, b) < 0.0;
+    if (!acted && !enters && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
     if (!balls_[i].holds && weight_at(p.data, at_a, at_b) < kMinWeight) continue;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
@@ -257,7 +270,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     } else {
       g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
     }
-    if (is_of_edges(kind)) correct_edges(p.data, a, b, g);
+    if (is_of_edges(kind) && !acts_by_rows()) correct_edges(p.data, a, b, g);
     const Vec3 n = value(g.normal);
     if (n.dot(at.normal_n) > kPasses) {
       at.normal = n.normalized();
@@ -267,7 +280,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
       at.place = at.place_n + 0.5 * a.u;
       continue;
     }
-    if (kind == GapKind::edge_edge) continue;
+    if (kind == GapKind::edge_edge && !acts_by_rows()) continue;
     if (const std::optional<double> end = gap_at_end_of(at, steps))
       follow_gap(p.data, *end - at.gap, a, b, at);
   }
@@ -277,9 +290,22 @@ double ContactSet::gap_after(std::span<const BodyStep> steps, const ImpulsePoint
   const SpherePairCache& balls = balls_[point.number];
   const BodyStep &a = steps[balls.a], &b = steps[balls.b];
   if (balls.holds) return gap_at_end(point.number, a, b);
-  if (points_[point.number].data.pair.kind != GapKind::edge_edge)
+  if (points_[point.number].data.pair.kind != GapKind::edge_edge || acts_by_rows())
     if (const std::optional<double> end = gap_at_end_of(point, steps)) return *end;
   return point.gap + point.normal.dot(apart(a, b, point.place));
+}
+
+std::pair<Vec3, Vec3> ContactSet::direction_after(std::span<const BodyStep> steps,
+                                                  const ImpulsePoint& at) const {
+  const Point& p = points_[at.number];
+  const BodyStep &a = steps[balls_[at.number].a], &b = steps[balls_[at.number].b];
+  const Vec3 moved = at.place_n + a.u;
+  if (is_over_surface(p.data.pair.kind)) return {at.normal, moved};
+  const BothPlaced end = BothPlaced::at_end(a, b);
+  const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, end.a, end.b);
+  const Vec3 n = value(g.normal);
+  if (n.dot(at.normal_n) > kPasses) return {n.normalized(), value(g.point)};
+  return {at.normal, moved};
 }
 
 std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> steps) const {
@@ -321,8 +347,8 @@ void ContactSet::report_impulse(Point& p, const ImpulsePoint& at, const ImpulseL
   r.friction_force += friction;
   r.work.dissipated += loss.normal + loss.friction;
   r.normal_loss += loss.normal;
-  const bool slips =
-      r.after.slips || (push > 0.0 && friction.norm() >= (1.0 - 1e-9) * at.friction * push);
+  const bool at_bound = push > 0.0 && friction.norm() >= (1.0 - 1e-9) * at.friction * push;
+  const bool slips = r.after.slips || (acts_by_rows() ? at.slip > touching_gap() : at_bound);
   r.after = p.data.history;
   r.after.slips = slips;
   p.touched = p.touched || push > 0.0;
@@ -336,21 +362,23 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
   for (Vec6& w : wrenches_) w.setZero();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
-    p.impact_loss = p.friction_loss = 0.0;
+    p.impact_loss = p.friction_loss = p.absorbed = 0.0;
     p.touched = false;
     p.report = {};
     p.report.gap_n = p.gap_n;
-    p.report.gap_n1 = nearest_at_end(i, steps);
+    p.report.gap_n1 = p.gap_after = nearest_at_end(i, steps);
     p.data.history.impulse.setZero();
     p.data.history.turning.setZero();
   }
   for (std::size_t k = 0; k < list.size(); ++k) {
     const ImpulsePoint& at = list[k];
-    if (at.impulse.isZero(0.0)) continue;
     Point& p = points_[at.number];
+    if (acts_by_rows()) p.gap_after = std::min(p.gap_after, gap_after(steps, at));
+    if (at.impulse.isZero(0.0)) continue;
     p.data.history.impulse += at.impulse;
     p.data.history.turning += at.turning;
     report_impulse(p, at, losses[k], context.dt);
+    p.absorbed += losses[k].normal;
     const auto add = [&](int shape, double sign) {
       const int body = shapes_[shape].body;
       if (body == kGround) return;
@@ -364,6 +392,11 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
     lost_by_friction_ += losses[k].friction;
     work.dissipated += losses[k].normal + losses[k].friction;
   }
+  step_length_ = context.dt;
+  touched_ = acts_by_rows() && std::any_of(points_.begin(), points_.end(), [&](const Point& p) {
+               return p.data.history.closed || touches(p);
+             });
+  if (touched_) return work;  // find_rows() follows
   // Energy added by Gauss-Seidel sweeps that ended early appears as an error of the balance.
   work.dissipated = std::max(0.0, work.dissipated);
   save(state);

@@ -47,7 +47,7 @@ constexpr double kPartOfSpeed = 1e-2;
 bool NonsmoothEngine::has_impulses(const System& system) {
   if (!system.contacts()) return false;
   const ImpulsiveContacts* c = system.contacts()->impulsive();
-  return c && c->impulses();
+  return c && c->impulses() && !c->impulses()->rigid;
 }
 
 NonsmoothEngine::NonsmoothEngine(const System& system)

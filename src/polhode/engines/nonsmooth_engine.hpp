@@ -35,7 +35,7 @@ class NonsmoothEngine final : public NewtonEngine {
 
   [[nodiscard]] const ImpulseSearch& last_search() const { return search_; }
   [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
-  /// Whether the contacts of a system act by impulses.
+  /// Whether the contacts of a system act by impulses of Moreau's rule.
   [[nodiscard]] static bool has_impulses(const System& system);
 
  private:

@@ -14,6 +14,8 @@ namespace {
 constexpr double kHarmless = 1e-3;
 /// Largest number of renewals of the contact pairs in one iteration.
 constexpr int kMaxPairChanges = 4;
+/// Applied part of an increment that cannot be the last.
+constexpr double kNotTheLast = 0.5;
 /// Scaled residual that is round-off, as a part of ℓ.
 constexpr double kRoundOff = 1e-14;
 
@@ -59,13 +61,19 @@ SparseEngine::SparseEngine(const System& system, const std::string& solver, Mome
                            NodeFactor policy)
     : system_(&system), newton_(system, form), solver_(linear::make_linear_solver(solver)) {
   if (!system.nodes().empty()) nodes_.emplace(system, policy);
-  if (system.contacts()) contacts_.emplace(system);
+  if (RigidContacts::of(system))
+    rows_.emplace(system);
+  else if (system.contacts())
+    contacts_.emplace(system);
   searches_ = contacts_ || meshes_meet(system.nodes());
   set_up();
 }
 
 std::string SparseEngine::name() const {
-  return std::string(contacts_ ? "contact + " : "") + (nodes_ ? "mumps + " : "") + solver_->name();
+  return std::string(rows_       ? "rows + "
+                     : contacts_ ? "contact + "
+                                 : "") +
+         (nodes_ ? "mumps + " : "") + solver_->name();
 }
 
 /// Sets up the matrix: interactions, then solids, then pairs of bodies that may be in contact.
@@ -82,6 +90,7 @@ void SparseEngine::set_up() {
 /// Limits the prediction like every increment.
 void SparseEngine::begin_step(const State& state, Trial& trial) {
   resume(state, trial);
+  if (rows_) rows_->begin_step(state, trial);
   if (!contacts_) return;
   if (!contacts_->begin_step(state, trial)) set_up();
   if (const double part = contacts_->free_part(); part < 1.0)
@@ -145,6 +154,7 @@ bool SparseEngine::solve(const State& state, const Trial& trial, bool refactor) 
       if (!factored_) return false;
       solver_->solve(x_);
       if (!x_.allFinite()) return false;
+      if (rows_ && !rows_->solve(state, trial, trial.scale(*system_), *solver_, x_)) return false;
     }
     if (!contacts_ || contacts_->cover(trial, x_)) {
       if (nodes_) nodes_->expand(x_);
@@ -173,6 +183,7 @@ Iteration SparseEngine::iterate(const State& state, Trial& trial, bool refactor,
   else
     move(state, trial, done);
   if (!std::isfinite(done.increment)) done.solved = false;
+  if (rows_ && !rows_->solved()) done.applied = std::min(done.applied, kNotTheLast);
   if (nodes_) nodes_->finish(done.increment, factor);
   return done;
 }
@@ -222,10 +233,13 @@ void SparseEngine::retreat(const State& state, Trial& trial, double part, Iterat
 }
 
 ConstraintCheck SparseEngine::check(const State& state, Trial& trial) {
-  return newton_.check(state, trial);
+  ConstraintCheck check = newton_.check(state, trial);
+  if (rows_) rows_->add_to(check, state, trial);
+  return check;
 }
 
 std::string SparseEngine::worst_other() const {
+  if (rows_ && !rows_->solved()) return rows_->unsolved();
   const std::string node = nodes_ ? nodes_->worst_node() : std::string{};
   return node.empty() && contacts_ ? contacts_->contacts()->tightest() : node;
 }
@@ -236,6 +250,7 @@ void SparseEngine::end_step(const State& state, Trial& trial) {
 
 void SparseEngine::add_ground_wrench(double* force, double* moment) const {
   if (contacts_) contacts_->add_ground_wrench(force, moment);
+  if (rows_) rows_->add_ground_wrench(force, moment);
 }
 
 double SparseEngine::stored(const State& state) const {
@@ -243,6 +258,7 @@ double SparseEngine::stored(const State& state) const {
 }
 
 Work SparseEngine::commit(State& state, const Trial& trial) {
+  if (rows_) return rows_->commit(state, trial);
   return contacts_ ? contacts_->commit(state, trial) : Work{};
 }
 

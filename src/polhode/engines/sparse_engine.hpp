@@ -6,6 +6,7 @@
 #include <string>
 
 #include <polhode/engines/condensed_nodes.hpp>
+#include <polhode/engines/rigid_contacts.hpp>
 #include <polhode/equations/body_contact_assembler.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/equations/newton_engine.hpp>
@@ -17,7 +18,8 @@ namespace polhode {
 /// linear solvers: the reference for the elimination along the tree, and its fallback. Where the
 /// system has deformable solids, their nodes are eliminated first. Where bodies may be in contact,
 /// the matrix has their pairs as well, and is analysed again when these change; increments are
-/// limited so that no shapes pass through each other. With contact between bodies or
+/// limited so that no shapes pass through each other. Contacts that are rows have no pairs: the
+/// response of the bodies to each row is solved for. With contact between bodies or
 /// between deformable surfaces a line search reduces the residual.
 class SparseEngine final : public NewtonEngine {
  public:
@@ -35,13 +37,13 @@ class SparseEngine final : public NewtonEngine {
   [[nodiscard]] int worst_body() const override { return worst_body_; }
   [[nodiscard]] std::string worst_other() const override;
   [[nodiscard]] bool keeps_factor() const override { return nodes_ && nodes_->reuses_factor(); }
-  [[nodiscard]] bool may_grow() const override { return contacts_.has_value(); }
+  [[nodiscard]] bool may_grow() const override { return contacts_ || rows_; }
   void end_step(const State& state, Trial& trial) override;
   void add_ground_wrench(double* force, double* moment) const override;
   [[nodiscard]] double stored(const State& state) const override;
   Work commit(State& state, const Trial& trial) override;
   [[nodiscard]] BodyContacts* contacts() const override {
-    return contacts_ ? contacts_->contacts() : nullptr;
+    return contacts_ ? contacts_->contacts() : rows_ ? rows_->contacts() : nullptr;
   }
 
   /// The system as last assembled: residuals by body and by row, without solids and contacts.
@@ -68,6 +70,7 @@ class SparseEngine final : public NewtonEngine {
   std::unique_ptr<linear::LinearSolver> solver_;
   std::optional<CondensedNodes> nodes_;
   std::optional<BodyContactAssembler> contacts_;
+  std::optional<RigidContacts> rows_;
   bool searches_ = false;  ///< Line search on the merit.
   Vec rhs_, x_;
   IterateSnapshot before_;  ///< The previous iterate, as long as increments are large.

@@ -205,7 +205,7 @@ class Search {
         last = it;
       }
       merits[static_cast<std::size_t>(it) % kLookBack] = now;
-      const Vec step = J.partialPivLu().solve(-F), from = p_;
+      const Vec step = solved(J, F), from = p_;
       ++report_.iterations;
       if (!step.allFinite()) return false;
       const auto apply = [&](double whole) {
@@ -216,6 +216,22 @@ class Search {
                    [&] { return merit(nullptr); });
     }
     return false;
+  }
+
+  /// Newton step −J⁻¹ F. Rows without an impulse, whose part of J is that of the identity, are
+  /// not factored.
+  [[nodiscard]] Vec solved(const Mat& J, const Vec& F) const {
+    std::vector<Index> acts;
+    for (Index i = 0; i < F.size(); ++i)
+      if (J(i, i) != 1.0 || J.row(i).cwiseAbs().sum() != 1.0) acts.push_back(i);
+    Vec step = -F;
+    if (acts.empty()) return step;
+    step(acts).setZero();
+    const Vec right = -F - J * step;
+    const Mat own = J(acts, acts);
+    const Vec of_own = own.partialPivLu().solve(Vec(right(acts)));
+    for (std::size_t k = 0; k < acts.size(); ++k) step[acts[k]] = of_own[static_cast<Index>(k)];
+    return step;
   }
 
   /// Projected Gauss-Seidel sweeps, forwards and backwards in turn.

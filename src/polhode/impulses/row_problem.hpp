@@ -47,7 +47,7 @@ struct RowProblem {
   /// @param rows  Number of rows.
   explicit RowProblem(Eigen::Index rows);
 
-  Mat A;      ///< Symmetric, positive semi-definite: velocities by unit impulses [1/kg].
+  Mat A;      ///< Velocities by unit impulses; nearly symmetric, positive semi-definite [1/kg].
   Vec b;      ///< Velocities for p = 0, less their targets [m/s].
   Vec given;  ///< Impulses that act already, contained in b [N s]; zero at first.
   /// Lengths that turn angular velocities into velocities; 1 of other rows.

@@ -24,7 +24,7 @@ struct ContactSideSpec {
 
 /// Contact law of two surfaces. Zero, unless another meaning is given: chosen from the bodies.
 struct ContactLawSpec {
-  std::string potential = "barrier";    ///< A word of contact::kPotentialWords, or nonsmooth.
+  std::string potential = "barrier";    ///< A word of contact::kPotentialWords, rigid or nonsmooth.
   double gap_tolerance = 0.0;           ///< Half the band of the barrier [m].
   double stiffness = 0.0;               ///< [N/m]; hertz [N/m^1.5].
   double reference_load = 0.0;          ///< At which the gap of the barrier is zero [N].
@@ -83,6 +83,8 @@ struct ContactsSpec {
 
   /// Whether impulses replace forces; a law of all pairs, as it determines the integration.
   [[nodiscard]] bool nonsmooth() const { return present && standard.potential == "nonsmooth"; }
+  /// Whether contacts are rows of the step, likewise a law of all pairs.
+  [[nodiscard]] bool rigid() const { return present && standard.potential == "rigid"; }
 };
 
 }  // namespace polhode

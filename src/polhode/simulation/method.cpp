@@ -3,6 +3,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
+#include <polhode/engines/rigid_contacts.hpp>
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/engines/tree_engine.hpp>
 #include <polhode/simulation/method.hpp>
@@ -125,8 +126,9 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' does not support contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
-    if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
-        ContactCgEngine::suits(system) && ContactCgEngine::free_bodies(system) >= kManyBodies) {
+    if (a.solver == "automatic" && !RigidContacts::of(system) && rate == MomentumRate::momentum &&
+        a.rho_inf == 1.0 && ContactCgEngine::suits(system) &&
+        ContactCgEngine::free_bodies(system) >= kManyBodies) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
                           ContactCgEngine::free_bodies(system));
       return std::make_unique<ContactCgEngine>(

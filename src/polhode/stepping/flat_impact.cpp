@@ -78,7 +78,7 @@ bool ImpactResolver::lands_flat(const Island& island, const std::vector<Row>& ro
 /// Resolves the impact of an edge or a face that lands flat as that of one point, which may take a
 /// couple besides. @returns whether it did: not if a point would have to pull. @eq{routh}
 bool ImpactResolver::follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) {
-  const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
+  const auto& [bodies, impact, course, slow, row] = rows_[rows.front().impact];
   const auto count = static_cast<Eigen::Index>(rows.size());
   const Eigen::Index m = count / 3;
   Mat K(count, count);

@@ -138,7 +138,7 @@ Work ImpactResolver::settle(State& state) {
   }
   std::vector<ResolvedImpact> of_contacts;
   for (int k : numbers_) of_contacts.push_back(k < 0 ? ResolvedImpact{} : settled_[k]);
-  contacts_->settled(of_contacts);
+  contacts_->settled(state, of_contacts);
   record(state, before, nodes_before);
   return work;
 }
@@ -156,7 +156,7 @@ void ImpactResolver::press_on(const State& state, const std::vector<Vec6>& befor
   const std::size_t known = resting_.size();
   contacts_->resting(state, jumped_, resting_);
   for (std::size_t i = known; i < resting_.size(); ++i) {
-    auto& [bodies, impact, course, slow] = resting_[i];
+    auto& [bodies, impact, course, slow, row] = resting_[i];
     impact.wanted = 0.0;
     if (bodies.a != kGround) impact.wanted += impact.on_a.dot(before[bodies.a]);
     if (bodies.b != kGround) impact.wanted += impact.on_b.dot(before[bodies.b]);
@@ -184,7 +184,7 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
   });
   const auto inert = [&](int k) {
     const Impact& impact = rows_[k].impact;
-    if (impact.mu > 0.0) return false;
+    if (impact.mu > 0.0 || rows_[k].row) return false;
     const double now = speed(state, k);
     return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
   };
@@ -263,7 +263,7 @@ Vec3 impulse_by_routh(const Mat3& K, const Eigen::Vector2d& mu, const ImpactCour
 
 /// Resolves an impact that shares its bodies with no other one. @eq{routh}
 void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) {
-  const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
+  const auto& [bodies, impact, course, slow, row] = rows_[rows.front().impact];
   if (friction_alone(*course)) return solve_rows(rows, v, Acts::friction);
   Mat3 K;
   Vec3 now;
@@ -299,6 +299,7 @@ double ImpactResolver::returnable(std::span<const Row> rows) const {
 
 /// Resolves an island. Impulses that would add energy to the step are scaled back. @eq{turn-law}
 void ImpactResolver::settle(State& state, const Island& island, std::vector<Row> rows) {
+  if (has_step_rows(island)) return settle_step_rows(state, island, std::move(rows));
   std::vector<Vec6> v = velocities(state, island);
   const std::vector<Vec6> start = v;
   find_held(rows, v);
@@ -330,6 +331,12 @@ void ImpactResolver::settle(State& state, const Island& island, std::vector<Row>
   if (first + 0.5 * second > most_added && second > 0.0)
     part = std::clamp((std::sqrt(first * first + 2.0 * second * most_added) - first) / second, 0.0,
                       1.0);
+  apply(state, island, rows, start, v, part);
+}
+
+void ImpactResolver::apply(State& state, const Island& island, const std::vector<Row>& rows,
+                           const std::vector<Vec6>& start, const std::vector<Vec6>& v,
+                           double part) {
   std::vector<Vec6> jumps(island.bodies.size());
   for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] = part * (v[i] - start[i]);
   for (const Row& row : rows)

@@ -73,6 +73,12 @@ class ImpactResolver {
   [[nodiscard]] std::vector<Row> start_rows(const State& state, const Island& island);
   void add_responses(std::span<const Island> islands, std::vector<std::vector<Row>>& rows);
   void settle(State& state, const Island& island, std::vector<Row> rows);
+  /// Applies a part of the impulses of an island's rows, which change its velocities from these.
+  void apply(State& state, const Island& island, const std::vector<Row>& rows,
+             const std::vector<Vec6>& start, const std::vector<Vec6>& v, double part);
+  /// Whether some rows of the island are of contacts that were rows of the step.
+  [[nodiscard]] bool has_step_rows(const Island& island) const;
+  void settle_step_rows(State& state, const Island& island, std::vector<Row> rows);
   /// Resolves the islands that contain a row from that one on.
   void settle_from(State& state, std::size_t first);
   /// Adds rows for the resting contacts of bodies that jumped, as far as they are loaded by it.

@@ -25,12 +25,25 @@ struct ImpactCourse {
   double fallen = 0.0;       ///< 2 a h by attracting forces after the bodies separated [m²/s²].
 };
 
+/// A contact that was a row of the step, for its velocity problem. @eq{velocity-problem}
+struct StepRow {
+  bool was_closed = false;  ///< At t_n.
+  bool stuck = false;       ///< Its slip was zero over the step, and before it.
+  bool stops = false;       ///< Its slip was not zero before the step, but over it.
+  bool touches = false;     ///< At t_{n+1}.
+  double restitution = 0.0;
+  double absorbed = 0.0;  ///< Work of its normal impulse in the step [J].
+
+  [[nodiscard]] bool closes() const { return !was_closed && touches; }
+};
+
 /// An impact between two bodies, or of one on the ground.
 struct PairImpact {
   Participants bodies;
   Impact impact;
   std::optional<ImpactCourse> course;
   double slow = 0.0;  ///< Of resting contact: it reacts to faster approach only [m/s].
+  std::optional<StepRow> row = {};  ///< Of contacts that are rows.
 };
 
 /// Impulse of a resolved impact, with its losses.
@@ -39,6 +52,9 @@ struct ResolvedImpact {
   Vec3 friction = Vec3::Zero();  ///< On a, world [N s].
   double normal_loss = 0.0;      ///< Energy dissipated by it [J].
   double friction_loss = 0.0;    ///< [J]
+  /// Of contacts that are rows, if their velocity problem was solved.
+  bool solved = false;
+  bool closed = false, sticks = false;  ///< From now on.
 };
 
 /// Interface of contacts between bodies: the pairs of bodies they couple change during a run. Their
@@ -84,8 +100,8 @@ class BodyContacts {
   /// @eq{impact-carried}
   virtual void resting(const State& /*state*/, std::span<const int> /*bodies*/,
                        std::vector<PairImpact>& /*list*/) {}
-  /// Receives the impulses, in the order of the list.
-  virtual void settled(std::span<const ResolvedImpact> impacts) = 0;
+  /// Receives the impulses, in the order of the list; histories are stored in the state.
+  virtual void settled(State& state, std::span<const ResolvedImpact> impacts) = 0;
   /// Location of the smallest clearance in a step that cannot be solved: "box 'a' on 'floor'"; may
   /// be empty.
   [[nodiscard]] virtual std::string tightest() const = 0;

@@ -11,10 +11,13 @@
 
 namespace polhode {
 
-/// Termination of the impulse iteration of a step.
+/// Law of contacts that act by impulses, and termination of the impulse iteration of a step.
 struct ImpulseOptions {
   int sweeps = 0;           ///< Largest number; 0: 100, or 200,000 over the number of points.
   double tolerance = 1e-3;  ///< Change of a point's speed in a sweep, as part of |g| Δt [-].
+  /// Rows of the step, exact in position, with a velocity problem at its end; otherwise Moreau's
+  /// velocities with these sweeps.
+  bool rigid = false;
 };
 
 /// A possible contact point of two bodies in the step, and its impulse. World axes; +impulse acts
@@ -30,9 +33,12 @@ struct ImpulsePoint {
   /// Of a relative to b at the contact point at t_n [m/s].
   Vec3 velocity = Vec3::Zero();
   double restitution = 0.0, friction = 0.0;  ///< [-]
+  double friction_across = 0.0;              ///< Across `along` [-].
+  Vec3 along = Vec3::UnitX();                ///< Direction of `friction`.
   double rolling = 0.0, torsion = 0.0;       ///< Angular impulse over normal impulse [m].
   Vec3 impulse = Vec3::Zero();               ///< Initially that of the last step [N s].
   Vec3 turning = Vec3::Zero();               ///< Rolling and torsional friction [N m s].
+  double slip = 0.0;                         ///< Of a row over the step [m].
   double size = 1.0;                         ///< Smallest half size of both shapes [m].
   int number = 0;                            ///< Number among the contacts.
 };
@@ -53,6 +59,8 @@ struct ImpulseSearch {
 class ImpulsiveContacts {
  public:
   virtual ~ImpulsiveContacts() = default;
+  /// Gap up to which surfaces touch: the accuracy of positions [m].
+  [[nodiscard]] virtual double touching_gap() const = 0;
   /// Null: these contacts act by forces.
   [[nodiscard]] virtual const ImpulseOptions* impulses() const = 0;
   /// Whether the list of candidates covers the bodies' motion in these steps; if not,
@@ -68,6 +76,9 @@ class ImpulsiveContacts {
   /// Gap of a point at the end of the steps [m].
   [[nodiscard]] virtual double gap_after(std::span<const BodyStep> steps,
                                          const ImpulsePoint& point) const = 0;
+  /// Normal, from b to a, and place of a point at the end of the steps: the gradient of the gap.
+  [[nodiscard]] virtual std::pair<Vec3, Vec3> direction_after(std::span<const BodyStep> steps,
+                                                              const ImpulsePoint& point) const = 0;
   /// Two bodies, an edge of one of which enters the other in a fast step.
   [[nodiscard]] virtual std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const = 0;

@@ -23,18 +23,32 @@ constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_
                                 "static_friction",    "friction_across", "direction",
                                 "friction_stiffness", "friction_damping"};
 
+/// Those that are available where contacts are rows of the step.
+constexpr std::array kKeysOfRows{"static_friction", "friction_across", "direction"};
+
+/// Whether a law applies to all pairs, as it determines the integration.
+bool is_of_all(const ContactLawSpec& law) {
+  return law.potential == "nonsmooth" || law.potential == "rigid";
+}
+
 void read_law(Section& section, ContactLawSpec& law) {
   const auto potential = section.choice("law");
   const bool sound_law = potential || !section.has("law");
   if (potential) law.potential = *potential;
   std::vector<std::string_view> by_hand{"law", "stiffness"};
-  if (law.potential == "nonsmooth") {
-    for (const char* key : kForceKeys)
+  if (is_of_all(law)) {
+    const bool rigid = law.potential == "rigid";
+    for (const char* key : kForceKeys) {
+      if (rigid && std::find(kKeysOfRows.begin(), kKeysOfRows.end(), std::string_view(key)) !=
+                       kKeysOfRows.end())
+        continue;
+      by_hand.emplace_back(key);
       if (section.has(key))
-        section.fault(key, "cannot be combined with the law nonsmooth",
-                      "Leave it out: this law has restitution, friction, rolling_friction and "
-                      "torsional_friction only.");
-    by_hand.insert(by_hand.end(), kForceKeys.begin(), kForceKeys.end());
+        section.fault(key, format("cannot be combined with the law {}", law.potential),
+                      rigid ? "Leave it out: bodies do not penetrate each other with this law."
+                            : "Leave it out: this law has restitution, friction, rolling_friction "
+                              "and torsional_friction only.");
+    }
     section.read_into(law, by_hand);
     return;
   }
@@ -206,12 +220,14 @@ class ContactsReader {
       pair.b = (*sides)[1];
     }
     read_law(section, pair.law);
-    if ((pair.law.potential == "nonsmooth") != contacts_.nonsmooth())
+    if ((is_of_all(pair.law) || is_of_all(contacts_.standard)) &&
+        pair.law.potential != contacts_.standard.potential)
       section.fault(
           "law",
           format("{} cannot be combined with {} in contacts.default", pair.law.potential,
                  contacts_.standard.potential),
-          "The law nonsmooth applies to all pairs: give it in contacts.default, or nowhere.");
+          format("The law {} applies to all pairs: give it in contacts.default, or nowhere.",
+                 is_of_all(pair.law) ? pair.law.potential : contacts_.standard.potential));
     if (!known) return;
     if (!pair.of_materials) check_law_of_sides(section, {pair.a, pair.b});
     const auto same = [&](const ContactPairSpec& other) {

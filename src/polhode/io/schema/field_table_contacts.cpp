@@ -32,6 +32,7 @@ std::vector<std::string> law_words() {
   std::vector<std::string> words;
   for (const contact::PotentialWord& known : contact::kPotentialWords)
     words.emplace_back(known.word);
+  words.emplace_back("rigid");
   words.emplace_back("nonsmooth");
   return words;
 }
@@ -40,10 +41,12 @@ std::vector<Field> law_fields() {
   return {
       {.name = "law",
        .kind = kChoice,
-       .meaning = "Potential of the normal force: a barrier in a thin band at the surface, which "
-                  "no load exceeds; a force linear in the penetration; or Hertz's law, with "
-                  "penetration to the power 3/2. nonsmooth: impulses instead of forces, for many "
-                  "bodies without joints; in default only.",
+       .meaning =
+           "Potential of the normal force: a barrier in a thin band at the surface, which "
+           "no load exceeds; a force linear in the penetration; or Hertz's law, with "
+           "penetration to the power 3/2. rigid: no penetration at all, exact like a "
+           "joint that only pushes, for mechanisms and small stacks. nonsmooth: impulses "
+           "instead of forces, for many bodies without joints. The last two in default only.",
        .standard = "barrier",
        .choices = law_words(),
        .member = &ContactLawSpec::potential},

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts that were rows of a step, at its end: which of them close, stick and open.
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Accuracy of positions, as a part of the model's size: that of accepted Newton iterations.
+constexpr double kTouching = 1e-11;
+
+}  // namespace
+
+double ContactSet::touching_gap() const { return kTouching * system_->length_scale(); }
+
+/// Lists the rows that were closed at t_n or touch at t_{n+1}, if any of them closes or begins to
+/// stick: nothing changes otherwise. @eq{velocity-problem}
+void ContactSet::find_rows(State& state, std::vector<PairImpact>& list) {
+  bool changes = false;
+  const std::size_t first = list.size();
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[static_cast<std::size_t>(i)];
+    const PointHistory& h = p.data.history;
+    const bool touch = touches(p);
+    if (p.sensor || !(touch || h.closed)) continue;
+    PairImpact r = row_at(p, state);
+    r.impact.wanted = 0.0;
+    r.impact.given = std::abs(step_length_) * p.report.normal_force;
+    r.impact.friction_impulse = step_length_ * p.report.friction_force;
+    const bool sticks = p.touched && !p.report.after.slips;
+    r.row = StepRow{.was_closed = h.closed,
+                    .stuck = h.closed && !h.slips && sticks,
+                    .stops = h.closed && h.slips && sticks && r.impact.mu > 0.0,
+                    .touches = touch,
+                    .restitution = p.restitution,
+                    .absorbed = std::max(0.0, p.absorbed)};
+    changes = changes || r.row->closes() || r.row->stops;
+    settling_.push_back(i);
+    list.push_back(std::move(r));
+  }
+  if (changes) return;
+  list.erase(list.begin() + static_cast<std::ptrdiff_t>(first), list.end());
+  const std::vector<ResolvedImpact> none(settling_.size());
+  close_rows(state, none);
+  settling_.clear();
+}
+
+/// Stores which rows are closed and which stick.
+void ContactSet::close_rows(State& state, std::span<const ResolvedImpact> impacts) {
+  std::vector<char> listed(points_.size(), 0);
+  for (std::size_t k = 0; k < settling_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(settling_[k]);
+    Point& p = points_[i];
+    PointHistory& h = p.data.history;
+    listed[i] = 1;
+    const ResolvedImpact& s = impacts[k];
+    p.touched = p.touched || s.normal > 0.0;
+    if (s.solved) {
+      h.closed = s.closed;
+      h.slips = s.closed && !s.sticks;
+    } else {
+      h.closed = h.closed && touches(p);
+      h.slips = h.closed && p.report.after.slips;
+    }
+    p.report.after.closed = h.closed;
+    p.report.after.slips = h.slips;
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (!listed[i]) points_[i].data.history.closed = points_[i].data.history.slips = false;
+  save(state);
+}
+
+}  // namespace polhode::contact

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/QR>
+
+#include <polhode/impulses/velocity_problem.hpp>
+
+namespace polhode {
+
+namespace {
+
+using Eigen::Index;
+using Kind = ImpulseRows::Kind;
+
+/// Half-steps of Jacobi's method for the parts of the impulses that are impacts. A fixed number, so
+/// that the order of rows has no effect.
+constexpr int kParts = 8;
+/// Mobility of a row beside held ones, as a part of its own, below which these carry it alone.
+constexpr double kCarried = 1e-12;
+/// Accuracy of the work that restitution returns, and most secants and bisections for it.
+constexpr double kSameWork = 1e-13;
+constexpr int kMostSections = 60;
+/// Largest number of sub-steps of restitution, as a multiple of those of compression.
+constexpr int kMostReturns = 8;
+/// Rounding of velocities relative to the sum of their terms: that at which row problems end, for
+/// as many of these as an impact has.
+constexpr double kFloor = 1024.0 * std::numeric_limits<double>::epsilon();
+
+/// Velocities and impulses of an impact along its course.
+class Course {
+ public:
+  explicit Course(const VelocityProblem& problem)
+      : problem_(problem), w_(problem.w), impulses_(Vec::Zero(problem.w.size())) {
+    result_.report.converged = true;
+  }
+
+  void before_impact();
+  void compress(int parts);
+  void restore(int parts);
+  void stop_slip();
+  VelocityProblem::Result end();
+  /// Whether any row approaches with friction, so that slip may change within the impact.
+  [[nodiscard]] bool rubs() const {
+    for (std::size_t i = 0; i < approach_.size(); ++i)
+      if (approach_[i] > 0.0)
+        return std::any_of(problem_.contacts.begin(), problem_.contacts.end(),
+                           [](const ContactRows& c) { return c.tangents >= 0; });
+    return false;
+  }
+  [[nodiscard]] bool returns() const {
+    for (std::size_t i = 0; i < approach_.size(); ++i)
+      if (approach_[i] > 0.0 && problem_.contacts[i].restitution > 0.0) return true;
+    return false;
+  }
+
+ private:
+  /// Velocities after a sub-step, with the work of its impulses on the bodies.
+  struct Part {
+    Vec w, p;
+    double work = 0.0;         ///< Of all rows [J].
+    double normal_work = 0.0;  ///< Of normal rows alone.
+  };
+  [[nodiscard]] Part part(const Vec& targets, double carried);
+  void take(const Part& part) {
+    w_ = part.w;
+    impulses_ += part.p;
+    work_ += part.work;
+  }
+  void apply(const std::vector<Index>& rows, const Vec& p) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const double impulse = p[static_cast<Index>(k)];
+      impulses_[rows[k]] += impulse;
+      w_ += impulse * problem_.A.col(rows[k]);
+    }
+  }
+  [[nodiscard]] std::vector<Index> held() const;
+  /// Rounding of a row's velocity after the impulses of the step and of this instant: the accuracy
+  /// of row problems.
+  [[nodiscard]] double floor_of(Index row) const {
+    double terms =
+        problem_.A.row(row).cwiseAbs().dot(impulses_.cwiseAbs()) + std::abs(problem_.w[row]);
+    for (const ContactRows& c : problem_.contacts)
+      terms += std::abs(problem_.A(row, c.normal)) * c.impulse;
+    return problem_.rounding + kFloor * terms;
+  }
+  const VelocityProblem& problem_;
+  Vec w_, impulses_;
+  std::vector<double> approach_;  ///< By contact: speed before the impact of a closing row, or 0.
+  std::vector<double> carried_;   ///< By contact: normal impulse for friction besides the impact's.
+  std::vector<double> work_of_;   ///< By contact: normal work absorbed in compression [J].
+  double work_ = 0.0;             ///< Of all rows on the bodies since the state before the impact.
+  VelocityProblem::Result result_;
+};
+
+/// Rows that neither the closing impulses nor anything else moves: normals closed at t_n that touch
+/// still, or would without these impulses, and the tangents of those that stuck.
+std::vector<Index> Course::held() const {
+  std::vector<Index> rows;
+  for (const ContactRows& c : problem_.contacts) {
+    if (!c.was_closed) continue;
+    double without = problem_.w[c.normal];
+    for (const ContactRows& other : problem_.contacts)
+      if (other.closes()) without -= problem_.A(c.normal, other.normal) * other.impulse;
+    if (!c.touches && !(without <= problem_.rounding)) continue;
+    rows.push_back(c.normal);
+    if (c.stuck && c.tangents >= 0) {
+      rows.push_back(c.tangents);
+      rows.push_back(c.tangents + 1);
+    }
+  }
+  return rows;
+}
+
+/// @eq{velocity-problem}
+void Course::before_impact() {
+  const std::vector<ContactRows>& contacts = problem_.contacts;
+  const Mat& A = problem_.A;
+  std::vector<Index> C;
+  double stored = 0.0;
+  for (const ContactRows& c : contacts)
+    if (c.closes()) {
+      C.push_back(c.normal);
+      stored += std::max(0.0, c.absorbed);
+    }
+  const std::vector<Index> H = held();
+  const auto n = static_cast<Index>(C.size());
+  Mat A_CC = A(C, C), back(static_cast<Index>(H.size()), n);
+  if (!H.empty()) {
+    Eigen::CompleteOrthogonalDecomposition<Mat> of_held(Mat(A(H, H)));
+    of_held.setThreshold(kCarried);
+    const Vec stop = -of_held.solve(Vec(w_(H)));
+    back = of_held.solve(Mat(A(H, C)));
+    stored += 0.5 * stop.dot(A(H, H) * stop);
+    apply(H, stop);
+    A_CC -= A(C, H) * back;
+  }
+  A_CC = 0.5 * (A_CC + A_CC.transpose()).eval();
+
+  Vec s(n), p(n), D(n);
+  std::vector<std::size_t> of;
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].closes()) of.push_back(i);
+  for (Index i = 0; i < n; ++i) {
+    p[i] = contacts[of[static_cast<std::size_t>(i)]].impulse;
+    D[i] = std::max(0.0, contacts[of[static_cast<std::size_t>(i)]].absorbed);
+  }
+  s = p;
+  const Vec w_C = w_(C);
+  for (int k = 0; k < kParts; ++k) {
+    const Vec now = s;
+    for (Index i = 0; i < n; ++i) {
+      const double a = A_CC(i, i);
+      double next = 0.0;
+      if (a > kCarried * A(C[static_cast<std::size_t>(i)], C[static_cast<std::size_t>(i)])) {
+        const double beta = w_C[i] - 0.5 * (A_CC.row(i).dot(now) - a * now[i]),
+                     root = std::sqrt(beta * beta + 2.0 * a * D[i]);
+        next = beta >= 0.0         ? (beta + root) / a
+               : root - beta > 0.0 ? 2.0 * D[i] / (root - beta)
+                                   : 0.0;
+      }
+      s[i] = 0.5 * now[i] + 0.5 * std::clamp(next, 0.0, p[i]);
+    }
+  }
+  const double a = s.dot(A_CC * s), b = s.dot(w_C), most = p.dot(A(C, C) * p);
+  double sigma = 0.0;
+  if (a > kCarried * most) {
+    const double root = std::sqrt(b * b + 2.0 * a * stored);
+    sigma = b >= 0.0 ? (b + root) / a : 2.0 * stored / (root - b);
+  }
+  const Vec taken = -sigma * s;
+  apply(C, taken);
+  if (!H.empty()) apply(H, -(back * taken));
+
+  approach_.assign(contacts.size(), 0.0);
+  carried_.assign(contacts.size(), 0.0);
+  work_of_.assign(contacts.size(), 0.0);
+  for (Index k = 0; k < n; ++k) {
+    const std::size_t i = of[static_cast<std::size_t>(k)];
+    const double speed = w_[contacts[i].normal];
+    if (speed < -floor_of(contacts[i].normal)) approach_[i] = -speed;
+    // The load of the step after the impact, less the flight that follows.
+    const double per_part = A_CC.row(k).dot(s),
+                 flight = per_part > 0.0
+                              ? 2.0 * contacts[i].restitution * approach_[i] * s[k] / per_part
+                              : 0.0;
+    carried_[i] = std::max(0.0, p[k] - sigma * s[k] - flight);
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!contacts[i].closes()) carried_[i] = contacts[i].impulse;
+    carried_[i] = std::max(0.0, carried_[i] - contacts[i].friction);
+  }
+}
+
+/// A row problem from the present velocities. @param carried  Part of the carried impulses.
+Course::Part Course::part(const Vec& targets, double carried) {
+  const Index n = w_.size();
+  RowProblem rows(n);
+  rows.A = problem_.A;
+  rows.b = w_ - targets;
+  for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
+    const ContactRows& c = problem_.contacts[i];
+    rows.blocks.push_back({.kind = Kind::normal, .first = c.normal});
+    if (c.tangents < 0) continue;
+    rows.blocks.push_back({.kind = Kind::friction,
+                           .first = c.tangents,
+                           .size = 2,
+                           .normal = c.normal,
+                           .half_axes = c.half_axes,
+                           .carried = carried * carried_[i]});
+  }
+  Part done{.w = {}, .p = Vec::Zero(n)};
+  const RowReport report = rows.solve(done.p, problem_.rounding);
+  result_.report.iterations += report.iterations;
+  result_.report.sweeps += report.sweeps;
+  if (!report.converged && !(report.error <= result_.report.error)) {
+    result_.report.converged = false;
+    result_.report.error = report.error;
+    result_.report.worst = report.worst;
+  }
+  done.w = w_ + problem_.A * done.p;
+  const Vec mean = 0.5 * (w_ + done.w);
+  done.work = done.p.dot(mean);
+  for (const ContactRows& c : problem_.contacts)
+    done.normal_work += done.p[c.normal] * mean[c.normal];
+  return done;
+}
+
+void Course::compress(int parts) {
+  const std::vector<ContactRows>& contacts = problem_.contacts;
+  for (int j = 1; j <= parts; ++j) {
+    Vec targets = Vec::Zero(w_.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      targets[contacts[i].normal] = -approach_[i] * (1.0 - static_cast<double>(j) / parts);
+    const Part next = part(targets, 1.0 / parts);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Index k = contacts[i].normal;
+      work_of_[i] -= 0.5 * next.p[k] * (w_[k] + next.w[k]);
+    }
+    take(next);
+  }
+}
+
+/// Ends where the normal work returned is that of the restitution, or where all rows together have
+/// returned what they took.
+void Course::restore(int parts) {
+  const std::vector<ContactRows>& contacts = problem_.contacts;
+  double left = 0.0;
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    left += contacts[i].restitution * contacts[i].restitution * std::max(0.0, work_of_[i]);
+  const auto targets = [&](double share) {
+    Vec t = Vec::Zero(w_.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      if (approach_[i] > 0.0)
+        t[contacts[i].normal] = std::max(0.0, w_[contacts[i].normal]) +
+                                share * contacts[i].restitution * approach_[i] / parts;
+    return t;
+  };
+  const double rounding = kSameWork * std::abs(work_);
+  for (int j = 0; j < kMostReturns * parts && left > 0.0; ++j) {
+    const Part next = part(targets(1.0), 0.0);
+    if (!(next.normal_work > 0.0)) return;
+    if (next.normal_work < left * (1.0 - kSameWork) && work_ + next.work <= rounding) {
+      left -= next.normal_work;
+      take(next);
+      continue;
+    }
+    // The last sub-step is shortened.
+    double low = 0.0, high = 1.0;
+    double share = parts == 1 && left < next.normal_work ? std::sqrt(left / next.normal_work)
+                                                         : std::min(1.0, left / next.normal_work);
+    Part last = next;
+    for (int k = 0; k < kMostSections; ++k) {
+      last = part(targets(share), 0.0);
+      const bool over = last.normal_work > left * (1.0 + kSameWork) || work_ + last.work > rounding;
+      if (!over && last.normal_work >= left * (1.0 - kSameWork)) break;
+      (over ? high : low) = share;
+      if (high - low <= kSameWork) break;
+      const double secant = last.normal_work > 0.0 ? share * left / last.normal_work : 0.0;
+      share = k == 0 && secant > low && secant < high ? secant : 0.5 * (low + high);
+    }
+    take(last);
+    return;
+  }
+}
+
+/// Friction of rows that began to stick ends their slip, with total impulses as unknowns so that
+/// normal ones may also decrease.
+void Course::stop_slip() {
+  const std::vector<ContactRows>& contacts = problem_.contacts;
+  RowProblem rows(w_.size());
+  rows.A = problem_.A;
+  rows.b = w_;
+  for (const ContactRows& c : contacts) {
+    rows.blocks.push_back({.kind = Kind::normal, .first = c.normal});
+    rows.given[c.normal] = c.impulse;
+    if (c.tangents < 0) continue;
+    rows.blocks.push_back({.kind = Kind::friction,
+                           .first = c.tangents,
+                           .size = 2,
+                           .normal = c.normal,
+                           .half_axes = c.half_axes,
+                           .carried = -c.friction});
+  }
+  Vec p = Vec::Zero(w_.size());
+  result_.report = rows.solve(p, problem_.rounding);
+  w_ += problem_.A * p;
+  impulses_ += p;
+}
+
+VelocityProblem::Result Course::end() {
+  for (const ContactRows& c : problem_.contacts) {
+    const bool closed = c.touches && !(w_[c.normal] > floor_of(c.normal));
+    const bool sticks =
+        closed && (c.tangents < 0 || (std::abs(w_[c.tangents]) <= floor_of(c.tangents) &&
+                                      std::abs(w_[c.tangents + 1]) <= floor_of(c.tangents + 1)));
+    result_.closed.push_back(closed ? 1 : 0);
+    result_.sticks.push_back(sticks ? 1 : 0);
+  }
+  result_.impulses = std::move(impulses_);
+  return std::move(result_);
+}
+
+}  // namespace
+
+/// @eq{velocity-problem}
+VelocityProblem::Result VelocityProblem::impact() const {
+  Course course(*this);
+  course.before_impact();
+  const int parts = course.rubs() ? kImpactSubsteps : 1;
+  course.compress(parts);
+  if (course.returns()) course.restore(parts);
+  return course.end();
+}
+
+VelocityProblem::Result VelocityProblem::stop_slip() const {
+  Course course(*this);
+  course.stop_slip();
+  return course.end();
+}
+
+}  // namespace polhode
