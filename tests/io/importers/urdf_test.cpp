@@ -262,7 +262,7 @@ TEST_F(Urdf, BrokenFilesAreRefusedWithTheirLine) {
   EXPECT_THAT(robot_fault(link("a") + joint("j", "fixed", "a", "b")),
               HasSubstr("there is no link 'b'"));
   EXPECT_THAT(
-      robot_fault(link("a") + link("b") + joint("j", "fixed", "a", "b", "<axis xyz='0 0 0'/>")),
+      robot_fault(link("a") + link("b") + joint("j", "planar", "a", "b", "<axis xyz='0 0 0'/>")),
       HasSubstr("the axis has no length"));
   EXPECT_THAT(robot_fault(link("a") + link("b") +
                           joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")),
@@ -288,6 +288,35 @@ TEST_F(Urdf, MimicOfItselfIsRefused) {
               HasSubstr("there is no joint 'x'"));
 }
 
+// Two bars on a frame that swings, the second one at -2 times the angle of the first.
+TEST_F(Urdf, MimicOfAParallelAxisIsAGear) {
+  const std::string inside =
+      link("base", "") + link("frame") + link("one") + link("two") +
+      joint("swing", "continuous", "base", "frame", "<origin rpy='0 0.7 0'/><axis xyz='0 1 0'/>") +
+      joint("a", "continuous", "frame", "one", "<origin xyz='0 0 1'/><axis xyz='1 0 0'/>") +
+      joint("b", "continuous", "frame", "two",
+            "<origin xyz='0 0.5 1'/><axis xyz='1 0 0'/><mimic joint='a' multiplier='-2' "
+            "offset='0.1'/>");
+  for (const double step : {0.02, 0.01, 0.0002}) {
+    Model model = read(inside, {"import.start.a=0.3", "bodies.one.com=[0, 0, 0.1]"});
+    model.analysis.step = step;
+    Simulation simulation(model);
+    while (simulation.time() < 0.3) simulation.step(0.3);
+    const Mat3 frame = simulation.body("frame").Lambda();
+    const auto angle = [&](const char* name) {
+      const Mat3 R = frame.transpose() * simulation.body(name).Lambda();
+      return std::atan2(R(2, 1), R(1, 1));
+    };
+    EXPECT_GT(std::abs(angle("one") - 0.3), 0.01);  // It falls.
+    EXPECT_NEAR(angle("two"), -2.0 * angle("one") + 0.1, 1e-11);
+  }
+  // A slide that follows an angle of another link cannot be said by a gear.
+  EXPECT_THAT(robot_fault(link("base", "") + link("one") + link("two") +
+                          joint("a", "continuous", "base", "one") +
+                          joint("b", "prismatic", "one", "two", "<mimic joint='a'/>")),
+              HasSubstr("the joint 'b' follows 'a' by <mimic>, which a gear cannot say"));
+}
+
 TEST_F(Urdf, MovingLinksNeedMassAndInertia) {
   const std::string base = link("base", "");
   EXPECT_THAT(robot_fault(base + link("arm", "<inertial><mass value='1'/><inertia/></inertial>") +
@@ -297,6 +326,10 @@ TEST_F(Urdf, MovingLinksNeedMassAndInertia) {
                           joint("j", "continuous", "base", "cross") +
                           joint("k", "continuous", "cross", "arm")),
               HasSubstr("the link 'cross' has no mass, but moves between two joints"));
+  EXPECT_THAT(
+      notes(base + link("arm") +
+            joint("j", "fixed", "base", "arm", "<axis xyz='0 0 0'/><dynamics damping='1'/>")),
+      HasSubstr("<dynamics> of a fixed joint has no influence on the motion"));
   // Without anything on it, it has no influence.
   const std::string wheel = base + link("arm") + link("wheel", "") +
                             joint("j", "continuous", "base", "arm") +

@@ -44,7 +44,7 @@ class ModelWriter {
       if (const int j = at(tree_.parent_joint, i); j >= 0) write_joint(j, joints, loads);
     for (const UrdfLoop& loop : robot_.loops) write_loop(loop, joints);
     for (std::size_t j = 0; j < robot_.joints.size(); ++j)
-      if (robot_.joints[j].mimic) refuse_mimic(robot_.joints[j]);
+      if (robot_.joints[j].mimic) write_mimic(static_cast<int>(j), loads);
     out_.root = make.map();
     make.put(out_.root, "format", make.text("1"));
     if (!robot_.name.empty()) {
@@ -266,7 +266,7 @@ class ModelWriter {
     if (joint.is_single()) {
       put_limits(make, joint, at(tree_.start, j)[0], node);
       put_losses(make, joint, name, node, loads);
-    } else if (joint.damping > 0.0 || joint.friction > 0.0) {
+    } else if (type != "fixed" && (joint.damping > 0.0 || joint.friction > 0.0)) {
       refuse(*joint.at,
              format("the damping or friction of the {} joint {} has no meaning", type,
                     quote(joint.name)),
@@ -333,15 +333,46 @@ class ModelWriter {
     make.put(joints, joint_name_.at(loop.name), std::move(node));
   }
 
-  void refuse_mimic(const UrdfJoint& joint) {
-    const int j = tree_.joint_index.at(joint.name);
-    if (at(tree_.grounded, at(tree_.child, j)) ||
-        at(tree_.body, at(tree_.parent, j)) == at(tree_.body, at(tree_.child, j)))
+  /// Whether a joint moves in the model.
+  [[nodiscard]] bool moves(int j) const {
+    return !at(tree_.grounded, at(tree_.child, j)) &&
+           at(tree_.body, at(tree_.parent, j)) != at(tree_.body, at(tree_.child, j));
+  }
+
+  /// Whether a gear can say it: two joints of the same kind on the ground, or two parallel axes,
+  /// apart from each other, of one body.
+  [[nodiscard]] bool is_gear(int j, int leader) const {
+    const UrdfJoint &one = at(robot_.joints, j), &two = at(robot_.joints, leader);
+    const int a = at(tree_.parent, j), b = at(tree_.parent, leader);
+    if (one.turns() != two.turns()) return false;
+    if (at(tree_.grounded, a) && at(tree_.grounded, b)) return true;
+    if (!one.turns() || at(tree_.body, a) != at(tree_.body, b)) return false;
+    const Pose p = in_body(a) * one.origin, q = in_body(b) * two.origin;
+    const Vec3 n = p.R * one.axis, m = q.R * two.axis, u = q.p - p.p;
+    // The limits of the gear itself are a hundred times narrower.
+    return n.cross(m).norm() < 1e-8 && (u - u.dot(n) * n).norm() > 1e-4 * (1.0 + u.norm());
+  }
+
+  void write_mimic(int j, SourceNode& loads) {
+    const UrdfJoint& joint = at(robot_.joints, j);
+    const UrdfMimic& mimic = *joint.mimic;
+    const int leader = tree_.joint_index.at(mimic.joint);
+    if (!moves(j)) return;
+    if (mimic.multiplier == 0.0 || !moves(leader) || !is_gear(j, leader)) {
+      refuse(*mimic.at,
+             format("the joint {} follows {} by <mimic>, which a gear cannot say",
+                    quote(joint.name), quote(mimic.joint)),
+             "Gears connect joints on the ground, or parallel axes of one link.");
       return;
-    refuse(*joint.mimic->at,
-           format("the joint {} follows {} by <mimic>, which a model cannot say", quote(joint.name),
-                  quote(joint.mimic->joint)),
-           "Connect them by a gear in an overlay.");
+    }
+    const NodeBuilder make{mimic.at->GetLineNum()};
+    SourceNode gear = make.map();
+    make.put(gear, "type", make.text("gear"));
+    make.put(
+        gear, "joints",
+        make.list({make.text(joint_name_.at(joint.name)), make.text(joint_name_.at(mimic.joint))}));
+    make.put(gear, "ratio", make.number(mimic.multiplier));
+    make.put(loads, joint_name_.at(joint.name) + "_mimic", std::move(gear));
   }
 
   const UrdfRobot& robot_;

@@ -197,12 +197,14 @@ class RobotReader {
            !shape.sizes.empty();
   }
 
-  Vec3 read_axis(const Element& parent) {
+  /// @param needed  Whether the joint has an axis.
+  Vec3 read_axis(const Element& parent, bool needed) {
     const Element* e = xml_.child(parent, "axis");
     if (e == nullptr) return Vec3::UnitX();
     const auto axis = xml_.vector(*e, "xyz");
     if (!axis) return Vec3::UnitX();
     if (axis->norm() > 0.0) return axis->normalized();
+    if (!needed) return Vec3::UnitX();
     xml_.fault(*e, "the axis has no length", "Give a direction, such as xyz=\"0 0 1\".");
     return Vec3::UnitX();
   }
@@ -230,11 +232,14 @@ class RobotReader {
     joint.parent = link_of("parent");
     joint.child = link_of("child");
     joint.origin = read_origin(e);
-    joint.axis = read_axis(e);
+    joint.axis = read_axis(e, joint.type != "fixed" && joint.type != "floating");
     read_limit(e, joint);
     if (const Element* dynamics = xml_.child(e, "dynamics")) {
       joint.damping = not_negative(*dynamics, "damping");
       joint.friction = not_negative(*dynamics, "friction");
+      if (joint.type == "fixed" && (joint.damping > 0.0 || joint.friction > 0.0))
+        add_ignored(dynamics->GetLineNum(), "<dynamics> of a fixed joint",
+                    "has no influence on the motion");
     }
     if (const Element* mimic = xml_.child(e, "mimic")) read_mimic(*mimic, joint);
     skip_all(e, {"calibration", "safety_controller", "gazebo", "hardwareInterface"});
@@ -280,7 +285,11 @@ class RobotReader {
     mimic.joint = xml_.required_text(e, "joint");
     mimic.multiplier = xml_.number(e, "multiplier").value_or(1.0);
     mimic.offset = xml_.number(e, "offset").value_or(0.0);
-    if (!mimic.joint.empty()) joint.mimic = mimic;
+    if (mimic.joint.empty()) return;
+    if (joint.type == "fixed")
+      add_ignored(e.GetLineNum(), "<mimic> of a fixed joint", "has no influence on the motion");
+    else
+      joint.mimic = mimic;
   }
 
   void read_loop(const Element& e, UrdfRobot& robot) {
@@ -308,7 +317,7 @@ class RobotReader {
       const Element* origin = xml_.child(*link, "origin");
       loop.frames[k] = read_pose(origin != nullptr ? *origin : *link);
     }
-    loop.axis = read_axis(e);
+    loop.axis = read_axis(e, loop.type != "fixed" && loop.type != "spherical");
     robot.loops.push_back(std::move(loop));
   }
 

@@ -304,18 +304,26 @@ class Arranger {
       changed = false;
       for (const int i : tree_.order) {
         const int j = at(tree_.parent_joint, i);
-        if (j < 0 || !is_rigid(j) || at(tree_.grounded, i)) continue;
+        if (j < 0 || !is_rigid(j)) continue;
         const int above = body_of(at(tree_.parent, j)), own = body_of(i);
-        if (above == own) continue;
-        const bool merge = options_.fixed_joints == "merge" || at(tree_.held, j) ||
-                           !unsound(at(tree_.mass, own)).empty() ||
-                           !unsound(at(tree_.mass, above)).empty();
-        if (!merge) continue;
+        if (above == own || !merges(j, above, own)) continue;
         unite(above, own);
         changed = true;
       }
     }
     for (const int i : tree_.order) at(tree_.body, i) = body_of(i);
+  }
+
+  /// Whether two bodies that a rigid joint connects become one. Fixed ones need no mass, but one
+  /// whose inertia is no rigid body's would lose it.
+  [[nodiscard]] bool merges(int j, int above, int own) {
+    const auto loses = [&](int i) {
+      const MassProperties& m = at(tree_.mass, i);
+      return !m.inertia.isZero(0.0) && !unsound(m).empty();
+    };
+    if (at(tree_.grounded, own)) return loses(above) || loses(own);
+    return options_.fixed_joints == "merge" || at(tree_.held, j) ||
+           !unsound(at(tree_.mass, own)).empty() || !unsound(at(tree_.mass, above)).empty();
   }
 
   int body_of(int i) {
