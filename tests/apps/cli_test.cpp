@@ -23,8 +23,8 @@ TEST_F(CommandLine, SuggestsACommandForAMisspeltOne) {
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.err,
             "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, "
-            "modes, view, plot, convert, check, info, schema, examples, doctor. Run 'polhode "
-            "--help' for its options.\n");
+            "modes, view, plot, convert, import, check, info, schema, examples, doctor. Run "
+            "'polhode --help' for its options.\n");
 }
 
 TEST_F(CommandLine, SuggestsAnOptionForAMisspeltOne) {
