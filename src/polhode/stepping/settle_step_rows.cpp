@@ -2,6 +2,7 @@
 // Velocity problems of islands with contacts that were rows of the step.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <polhode/impulses/velocity_problem.hpp>
