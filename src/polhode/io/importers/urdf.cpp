@@ -25,14 +25,8 @@ using Kind = ImportNote::Kind;
 class ModelWriter {
  public:
   ModelWriter(const UrdfRobot& robot, const UrdfTree& tree, const ImportOptions& options,
-              XmlFile& xml, Diagnostics& diagnostics, const std::string& folder, Imported& out)
-      : robot_(robot),
-        tree_(tree),
-        options_(options),
-        xml_(xml),
-        diagnostics_(diagnostics),
-        folder_(folder),
-        out_(out) {}
+              XmlFile& xml, const std::string& folder, Imported& out)
+      : robot_(robot), tree_(tree), options_(options), xml_(xml), folder_(folder), out_(out) {}
 
   void write() {
     const NodeBuilder make{xml_.root().GetLineNum()};
@@ -379,7 +373,6 @@ class ModelWriter {
   const UrdfTree& tree_;
   const ImportOptions& options_;
   XmlFile& xml_;
-  Diagnostics& diagnostics_;
   const std::string& folder_;
   Imported& out_;
   std::vector<std::string> link_name_;
@@ -399,7 +392,7 @@ Imported import_urdf(std::shared_ptr<const SourceText> source, const ImportOptio
   diagnostics.throw_if_any();
   UrdfTree tree;
   if (arrange(robot, options, xml, diagnostics, result.notes, tree))
-    ModelWriter(robot, tree, options, xml, diagnostics, folder, result).write();
+    ModelWriter(robot, tree, options, xml, folder, result).write();
   diagnostics.throw_if_any();
   return result;
 }
