@@ -16,7 +16,8 @@ namespace polhode {
 /// cables, automatic steps, numerical damping. Objects unsupported by all contacts are checked
 /// elsewhere.
 void check_nonsmooth(const Model& model, std::vector<InputError>& faults);
-/// Likewise with contacts that are rows of the step: solids, cables, numerical damping.
+/// Checks that a model with the law rigid has no unsupported objects: solids, cables, numerical
+/// damping.
 void check_rigid(const Model& model, std::vector<InputError>& faults);
 
 }  // namespace polhode

@@ -76,8 +76,8 @@ class Course {
     }
   }
   [[nodiscard]] std::vector<Index> held() const;
-  /// Rounding of a row's velocity after the impulses of the step and of this instant: the accuracy
-  /// of row problems.
+  /// Rounding of a row's velocity after the impulses of the step and of this instant, to which
+  /// row problems are solved.
   [[nodiscard]] double floor_of(Index row) const {
     double terms =
         problem_.A.row(row).cwiseAbs().dot(impulses_.cwiseAbs()) + std::abs(problem_.w[row]);

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// A unilateral row over a step, with its friction, at the end of it.
+/// A contact at the end of a step in which it was a unilateral row, with its friction.
 struct ContactRows {
   Eigen::Index normal = 0;     ///< Row of the normal velocity, positive: separating.
   Eigen::Index tangents = -1;  ///< First of two rows of the slip; −1: no friction.

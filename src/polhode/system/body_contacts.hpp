@@ -52,7 +52,7 @@ struct ResolvedImpact {
   Vec3 friction = Vec3::Zero();  ///< On a, world [N s].
   double normal_loss = 0.0;      ///< Energy dissipated by it [J].
   double friction_loss = 0.0;    ///< [J]
-  /// Of contacts that are rows, if their velocity problem was solved.
+  /// Whether the velocity problem of a contact that is a row was solved.
   bool solved = false;
   bool closed = false, sticks = false;  ///< From now on.
 };

@@ -11,7 +11,7 @@
 
 namespace polhode::io {
 
-/// How a file of another program becomes a model; the keys of `import` in a model file.
+/// Options of the import of another program's file: the keys of `import` in a model file.
 struct ImportOptions {
   std::string file;                                  ///< Path, as seen from here.
   std::string base = "fixed";                        ///< fixed | floating: the first link.

@@ -21,7 +21,7 @@ struct UrdfTree {
   std::vector<bool> held;                  ///< Joints that do not move although their type does.
   std::vector<bool> grounded;              ///< Links that never move.
   std::vector<int> body;  ///< Link whose body each link belongs to; its own: it is one.
-  /// Of each link that is a body, in its axes.
+  /// Mass properties of each link that is a body, in its axes.
   std::vector<geometry::MassProperties> mass;
 };
 

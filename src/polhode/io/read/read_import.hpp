@@ -23,7 +23,7 @@ struct ModelText {
 /// @throws FileError
 [[nodiscard]] ModelText model_text_of(const std::string& file, const Overrides& overrides);
 
-/// What an import did.
+/// Report of an import.
 struct ImportReport {
   std::string format, file;  ///< "" if nothing was imported.
   std::vector<ImportNote> notes;
@@ -50,7 +50,7 @@ struct ExpandedModel {
 /// @throws ModelErrors, FileError
 [[nodiscard]] ExpandedModel expanded_model(const std::string& file, const std::string& mesh_folder,
                                            const Overrides& overrides = {});
-/// Likewise, with paths relative to the folder of the file.
+/// The same of a file, with paths relative to its folder.
 [[nodiscard]] ExpandedModel expanded_model(const std::string& file,
                                            const Overrides& overrides = {});
 
