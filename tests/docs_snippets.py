@@ -85,17 +85,21 @@ def compare_readme():
 
 
 def check_models(page):
-    """Faults that `polhode check` finds in the complete models of a page, and the number of models. Parts of models are skipped."""
-    models, name = [], None
+    """Faults that `polhode check` finds in the complete models of a page, and the number of models. Parts of models are skipped;
+    other files that a page names are there for the models that read them."""
+    models, files, name = [], [], None
     for block in BLOCK.finditer(page.read_text()):
         if block["file"]:
             name = block["file"]
         elif block["language"] == "yaml" and block["text"].startswith("format:"):
             models.append((name or f"model{len(models)}.yaml", block["text"]))
             name = None
+        elif name:
+            files.append((name, block["text"]))
+            name = None
     faults = []
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in models:
+        for name, text in models + files:
             (pathlib.Path(folder) / name).write_text(text)
         for name, text in models:
             done = subprocess.run([POLHODE, "check", name], cwd=folder, capture_output=True, text=True, check=False, timeout=120)
