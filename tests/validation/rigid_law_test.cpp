@@ -163,6 +163,20 @@ TEST(RigidLaw, ARestartContinuesWithTheSameBits) {
   EXPECT_EQ(second.state_hash(), whole.state_hash());
 }
 
+// 550 balls at rest have three rows each.
+TEST(RigidLaw, SaysThatThereAreTooManyRows) {
+  std::string balls;
+  for (int i = 0; i < 550; ++i)
+    balls += format("  b{}: {{shape: {{sphere: 0.2}}, mass: 1, position: [{}, 0, 0.1]}}\n", i, i);
+  Simulation s = made(model(balls, ", friction: 0.3", 0.1, 1e-2));
+  const RunSummary r = s.run();
+  EXPECT_EQ(r.end, RunEnd::not_converged);
+  EXPECT_NE(r.message.find("contacts have 1650 rows, more than the 1500 of law: rigid; use law: "
+                           "barrier"),
+            std::string::npos)
+      << r.message;
+}
+
 TEST(RigidLaw, RefusesWhatItDoesNotHave) {
   const std::string ball = "  ball: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 0.2]}";
   EXPECT_TRUE(expect_fault(model(ball, ", stiffness: 1e5", 0.1, 1e-2),

@@ -228,6 +228,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   [[nodiscard]] bool acts_by_rows() const { return impulses_ && impulses_->rigid; }
   /// Whether a row touches at t_{n+1}.
   [[nodiscard]] bool touches(const Point& p) const { return p.gap_after <= touching_gap(); }
+  [[nodiscard]] std::optional<std::pair<int, int>> overlapping(
+      std::span<const BodyStep> steps) const;
   void find_rows(State& state, std::vector<PairImpact>& list);
   void close_rows(State& state, std::span<const ResolvedImpact> impacts);
   [[nodiscard]] double weight_now(const Point& p, const State& state) const;

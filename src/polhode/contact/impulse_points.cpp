@@ -16,8 +16,6 @@ namespace polhode::contact {
 
 namespace {
 
-/// Weight of a potential below which a neighbouring point acts instead.
-constexpr double kMinWeight = 0.5;
 /// Rotations and displacements (as a part of the size) below these have no direction.
 constexpr double kMinTurn = 1e-6, kMinMove = 1e-6;
 /// Largest shift of a point, as a part of the size, and largest rotation of a normal.
@@ -309,6 +307,7 @@ std::pair<Vec3, Vec3> ContactSet::direction_after(std::span<const BodyStep> step
 }
 
 std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> steps) const {
+  if (acts_by_rows()) return overlapping(steps);
   int last = -1;  // edge of the last pair
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     const Point& p = points_[i];

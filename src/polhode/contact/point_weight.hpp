@@ -5,6 +5,9 @@
 
 namespace polhode::contact {
 
+/// Weight below which a neighbouring point acts by impulses instead.
+inline constexpr double kMinWeight = 0.5;
+
 /// Active part of a point's potential at the present placements, less than 1 where its distance
 /// has no unique direction.
 [[nodiscard]] double weight_at(const PointData& data, const Placement<double>& at_a,

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/impulse_places.hpp>
+#include <polhode/contact/point_weight.hpp>
 
 namespace polhode::contact {
 
@@ -11,10 +13,30 @@ namespace {
 
 /// Accuracy of positions, as a part of the model's size: that of accepted Newton iterations.
 constexpr double kTouching = 1e-11;
+/// Overlap that rows which are solved cannot leave, in gaps that count as touching.
+constexpr double kOverlap = 100.0;
 
 }  // namespace
 
 double ContactSet::touching_gap() const { return kTouching * system_->length_scale(); }
+
+/// The bodies that overlap most at the end of a step, by more than the accuracy of rows.
+std::optional<std::pair<int, int>> ContactSet::overlapping(std::span<const BodyStep> steps) const {
+  double deepest = -kOverlap * touching_gap();
+  std::optional<std::pair<int, int>> pair;
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    const Point& p = points_[static_cast<std::size_t>(i)];
+    const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
+    if (p.sensor || least_gap_at_end(p, a, b) > deepest) continue;
+    const BothPlaced end = BothPlaced::at_end(a, b);
+    if (!balls_[i].holds && weight_at(p.data, end.a, end.b) < kMinWeight) continue;
+    const double gap = nearest_at_end(i, steps);
+    if (gap >= deepest) continue;
+    deepest = gap;
+    pair = {shapes_[p.a].body, shapes_[p.b].body};
+  }
+  return pair;
+}
 
 /// Lists the rows that were closed at t_n or touch at t_{n+1}, if any of them closes or begins to
 /// stick: nothing changes otherwise. @eq{velocity-problem}

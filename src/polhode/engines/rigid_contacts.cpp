@@ -15,6 +15,11 @@ namespace {
 /// Rounding of positions and of velocities, relative to their size.
 constexpr double kGapRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kSpeedRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// Error of the displacement along a row that is solved, in gaps that count as touching.
+constexpr double kRoundings = 100.0;
+/// Rows of all islands, and of one, for which the dense matrices of the row problem are not too
+/// large: 18 MB, and 0.05 s for each of its factorisations.
+constexpr std::size_t kMostRows = 1500, kMostRowsOfIsland = 600;
 
 }  // namespace
 
@@ -124,6 +129,14 @@ void RigidContacts::put_rows() {
   }
 }
 
+/// Relative displacement of a point over the step.
+Vec3 RigidContacts::slip_of(const ImpulsePoint& p) const {
+  const auto way = [&](const BodyStep& s) {
+    return Vec3(s.u + s.theta.cross(p.place - s.r_n - 0.5 * s.u));
+  };
+  return way(step_of(p.a)) - way(step_of(p.b));
+}
+
 double RigidContacts::displacement(const Row& row) const {
   const auto& [a, b] = std::pair(step_of(row.a), step_of(row.b));
   Vec6 x_a, x_b;
@@ -139,13 +152,13 @@ double RigidContacts::change(const Row& row, const Vec& x) {
   return sum;
 }
 
-std::string RigidContacts::name_of(const ImpulsePoint& p) const {
+std::string RigidContacts::names_of(int a, int b) const {
   const auto name = [&](int body) {
     return body == kGround
                ? std::string("the ground")
                : format("body '{}'", system_->bodies()[static_cast<std::size_t>(body)].name);
   };
-  return format("{} and {}", name(p.a), name(p.b));
+  return format("{} and {}", name(a), name(b));
 }
 
 /// @eq{contact-rows}
@@ -157,6 +170,12 @@ bool RigidContacts::solve(const State& state, const Trial& trial, double scale,
   put_rows();
   const auto n = static_cast<Eigen::Index>(rows_.size());
   if (n == 0) return true;
+  if (rows_.size() > kMostRows) {
+    solved_ = false;
+    unsolved_ = format("contacts have {} rows, more than the {} of law: rigid; use law: barrier",
+                       rows_.size(), kMostRows);
+    return false;
+  }
   const double per_way = 2.0 / dt_, per_impulse = scale / dt_;
   responses_.resize(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -191,6 +210,15 @@ bool RigidContacts::solve(const State& state, const Trial& trial, double scale,
   const double rounding = kSpeedRounding * fastest + kGapRounding * far * std::abs(per_way);
   Vec p = Vec::Zero(n);
   for (const std::vector<Eigen::Index>& island : islands(A)) {
+    if (island.size() > kMostRowsOfIsland) {
+      solved_ = false;
+      const Row& row = rows_[static_cast<std::size_t>(island.front())];
+      unsolved_ = format(
+          "the contact of {} and what it moves have {} rows, more than the {} of law: rigid; use "
+          "law: barrier",
+          names_of(row.a, row.b), island.size(), kMostRowsOfIsland);
+      return false;
+    }
     RowProblem problem(static_cast<Eigen::Index>(island.size()));
     problem.A = A(island, island);
     problem.b = y(island);
@@ -202,8 +230,8 @@ bool RigidContacts::solve(const State& state, const Trial& trial, double scale,
       solved_ = false;
       const auto worst = static_cast<std::size_t>(std::max<Eigen::Index>(0, report.worst));
       unsolved_ = format("the contact of {} is not solved: it misses by {:.2g} m/s",
-                         name_of(points_[static_cast<std::size_t>(
-                             rows_[static_cast<std::size_t>(island[worst])].point)]),
+                         names_of(rows_[static_cast<std::size_t>(island[worst])].a,
+                                  rows_[static_cast<std::size_t>(island[worst])].b),
                          report.error);
     }
     p(island) = of_island;
@@ -265,6 +293,28 @@ void RigidContacts::add_to(ConstraintCheck& check, const State& state, const Tri
     check.work_defect += force * std::abs(impulsive_->gap_after(steps_, p));
     check.work_scale += force * (system_->length_scale() + p.place.lpNorm<1>());
   }
+  check.broken = broken();
+}
+
+/// What a step with these rows must not do, with the bodies that do it: overlap at its end, as a
+/// point that no row is for, or gain energy, as a direction of the mean of both ends that is not
+/// that of the change of the gap. Empty: nothing. Both vanish with the length of the step.
+std::string RigidContacts::broken() const {
+  const double accuracy = kRoundings * touching_;
+  if (const auto pair = impulsive_->passed(steps_))
+    return format("{} would overlap", names_of(pair->first, pair->second));
+  double gained = 0.0, forces = 0.0, most = 0.0;
+  const ImpulsePoint* worst = nullptr;
+  for (const ImpulsePoint& p : points_) {
+    const double force = p.normal.dot(p.impulse) / dt_, gain = force * p.normal.dot(slip_of(p));
+    gained += gain;
+    forces += std::abs(force);
+    if (gain <= most) continue;
+    most = gain;
+    worst = &p;
+  }
+  if (!worst || gained <= accuracy * forces) return {};
+  return format("the contact of {} would gain energy", names_of(worst->a, worst->b));
 }
 
 void RigidContacts::add_ground_wrench(double* force, double* moment) const {
@@ -285,16 +335,13 @@ Work RigidContacts::commit(State& state, const Trial& trial) {
   losses_.assign(points_.size(), {});
   for (std::size_t k = 0; k < points_.size(); ++k) {
     ImpulsePoint& p = points_[k];
-    const BodyStep &a = step_of(p.a), &b = step_of(p.b);
-    const auto way = [&](const BodyStep& s) {
-      return Vec3(s.u + s.theta.cross(p.place - s.r_n - 0.5 * s.u));
-    };
-    const Vec3 slip = way(a) - way(b);
+    const Vec3 slip = slip_of(p);
     const double normal = p.normal.dot(p.impulse);
     p.slip = (slip - p.normal.dot(slip) * p.normal).norm();
     losses_[k].normal = -normal * p.normal.dot(slip) / dt_;
-    losses_[k].friction =
-        -((p.impulse - normal * p.normal).dot(slip) + p.turning.dot(a.theta - b.theta)) / dt_;
+    losses_[k].friction = -((p.impulse - normal * p.normal).dot(slip) +
+                            p.turning.dot(step_of(p.a).theta - step_of(p.b).theta)) /
+                          dt_;
   }
   ImpulseSearch search;
   search.converged = true;

@@ -32,7 +32,7 @@ class RigidContacts {
   /// Adds the effect of the rows to increments.
   /// @param scale  s of the Newton system. @param solver  With its factors.
   /// @param x      Increments without contact; with it.
-  /// @returns false if a value is not finite.
+  /// @returns false if a value is not finite, or there are too many rows.
   [[nodiscard]] bool solve(const State& state, const Trial& trial, double scale,
                            const linear::LinearSolver& solver, Vec& x);
   /// Whether the last row problem was solved: a step must not end with another one.
@@ -67,7 +67,9 @@ class RigidContacts {
   [[nodiscard]] const BodyStep& step_of(int body) const {
     return body == kGround ? steps_.back() : steps_[static_cast<std::size_t>(body)];
   }
-  [[nodiscard]] std::string name_of(const ImpulsePoint& p) const;
+  [[nodiscard]] Vec3 slip_of(const ImpulsePoint& p) const;
+  [[nodiscard]] std::string broken() const;
+  [[nodiscard]] std::string names_of(int a, int b) const;
 
   const System* system_;
   BodyContacts* contacts_;

@@ -170,7 +170,10 @@ Iteration SparseEngine::iterate(const State& state, Trial& trial, bool refactor,
   Iteration done;
   const bool factor = nodes_ && nodes_->must_factor(trial, refactor);
   if (nodes_ && !prepare_nodes(state, trial, factor, done)) return done;
-  if (!solve(state, trial, refactor)) return done;
+  if (!solve(state, trial, refactor)) {
+    if (rows_ && !rows_->solved()) done.reason = rows_->unsolved();
+    return done;
+  }
   done.solved = true;
   part_ = contacts_ ? std::min(damping, contacts_->filter()) : damping;
   const double last = nodes_ ? nodes_->last_increment() : 0.0;

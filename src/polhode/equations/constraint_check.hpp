@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 namespace polhode {
 
 /// Violation of the constraints at the current iterate.
@@ -9,6 +11,7 @@ struct ConstraintCheck {
   int worst_row = -1;
   double work_defect = 0.0;  ///< Σ |λ g|: possible energy leak of the multipliers [J].
   double work_scale = 0.0;  ///< Σ |λ|(ℓ + |x|): times round-off, the smallest attainable leak [J].
+  std::string broken;       ///< What a contact does that it must not; empty: nothing.
 };
 
 }  // namespace polhode

@@ -37,7 +37,7 @@ constexpr std::array kProximalParts{1e-3, 1e-1};
 constexpr double kLessProximal = 0.1, kLeastProximal = 1e-14;
 /// Sweeps between two searches by Newton's method, of which each round doubles the number.
 constexpr int kSweeps = 25;
-constexpr int kRounds = 6;
+constexpr int kRounds = 6, kRoundsOfMany = 2;  ///< The latter beyond kMostDenseRows.
 
 /// Velocities of a problem and the natural map of its impulses.
 class Search {
@@ -59,7 +59,8 @@ class Search {
       p_ = best_;
       found = newton(start_, part);
     }
-    for (int round = 0; round < kRounds && !found; ++round) {
+    const int rounds = start_.size() > kMostDenseRows ? kRoundsOfMany : kRounds;
+    for (int round = 0; round < rounds && !found; ++round) {
       p_ = best_;
       found = sweep(kSweeps << round) || newton(best_, kProximalParts.back());
     }

@@ -82,6 +82,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     report.reason = std::move(reason);
     const int worst = engine.worst_body();
     report.worst = engine.worst_other();
+    if (report.worst == report.reason) report.worst.clear();
     if (report.worst.empty() && worst >= 0)
       report.worst = format("body '{}'", system.bodies()[worst].name);
   };
@@ -168,6 +169,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     report.constraints = engine.check(state, trial);
     const ConstraintCheck& c = report.constraints;
     if (!std::isfinite(c.residual)) return fail("a value is not finite"), report;
+    if (!c.broken.empty()) return fail(c.broken), report;
     // The last increment may have left the equation of a set-valued law for another one, which is
     // open however small the increment was.
     if (system.set_valued() && c.residual > left * system.length_scale() && stalled < kStalled &&

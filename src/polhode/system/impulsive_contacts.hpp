@@ -79,7 +79,8 @@ class ImpulsiveContacts {
   /// Normal, from b to a, and place of a point at the end of the steps: the gradient of the gap.
   [[nodiscard]] virtual std::pair<Vec3, Vec3> direction_after(std::span<const BodyStep> steps,
                                                               const ImpulsePoint& point) const = 0;
-  /// Two bodies, an edge of one of which enters the other in a fast step.
+  /// Two bodies that overlap at the end of the steps, as no point found them: rows by their gaps,
+  /// other laws if an edge enters a body in a fast step.
   [[nodiscard]] virtual std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const = 0;
   /// Commits an accepted step like BodyContacts::commit().
