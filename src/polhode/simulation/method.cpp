@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/dynamics/extrapolation.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/engines/rigid_contacts.hpp>
@@ -18,6 +19,9 @@ namespace {
 /// Newton tolerances. Higher orders resolve smaller errors; in solids the remaining error of a step
 /// excites many vibrations.
 constexpr double kToleranceBodies = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
+constexpr double kToleranceExtrapolated = 1e-9;
+/// Order by extrapolation unless it is given.
+constexpr int kOrderExtrapolated = 6;
 /// Iteration limits: for bodies and joints, and for solids, which may reuse a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;
 /// With surfaces of solids in contact: their forces follow from tiny displacements.
@@ -46,8 +50,25 @@ JacobianPolicy jacobian_policy(const std::string& word) {
                    "Use one of: automatic, every_iteration, every_step, never");
 }
 
+/// Order of an extrapolation. Whether the model is smooth enough is checked by require_smooth().
+int extrapolation_order(const AnalysisSpec& a) {
+  const auto refuse = [](const std::string& why, const std::string& hint) {
+    throw InputError("analysis.method", format("is extrapolation, but {}", why), hint);
+  };
+  const int order = a.order.value_or(kOrderExtrapolated);
+  static_cast<void>(extrapolation_substeps(order));
+  if (a.rho_inf != 1.0)
+    refuse(format("rho_inf is {:g}: only the step with rho_inf: 1 is symmetric in time", a.rho_inf),
+           "Set rho_inf: 1, or order: 2");
+  if (a.momentum_rate != "momentum")
+    refuse("only the step with momentum_rate: momentum is symmetric in time",
+           "Set momentum_rate: momentum, or order: 2");
+  return order;
+}
+
 /// Order of accuracy, and reasons against higher ones.
 int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
+  if (is_extrapolated(a)) return extrapolation_order(a);
   const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
   if (system.contacts() && a.order.value_or(2) != 2)
     throw InputError("analysis.order",
@@ -75,7 +96,7 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
            "Set rho_inf: 1, or order: 2");
   if (system.dissipates())
     refuse("the model has dampers: stages backward in time would add energy",
-           "Use order: 2 for this model");
+           "Set method: extrapolation, or order: 2");
   if (a.momentum_rate != "momentum")
     refuse("only the step with momentum_rate: momentum is symmetric in time",
            "Set momentum_rate: momentum, or order: 2");
@@ -166,6 +187,10 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
 
 }  // namespace
 
+bool is_extrapolated(const AnalysisSpec& a) {
+  return a.type == "dynamics" && a.method == "extrapolation" && a.order != 2;
+}
+
 int method_order(const System& system, const AnalysisSpec& analysis) {
   std::string reasons;
   return choose_order(system, analysis, reasons);
@@ -178,6 +203,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   const JacobianPolicy policy = jacobian_policy(a.jacobian);
   StepControl& c = m.control;
   c.order = choose_order(system, a, m.narration);
+  c.extrapolated = is_extrapolated(a);
   c.step = a.step;
   c.tolerance = a.tolerance.value_or(kDefaultError);
   c.horizon = a.duration;
@@ -185,6 +211,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
+                       : c.extrapolated          ? kToleranceExtrapolated
                        : c.order > 4             ? kToleranceHighOrder
                        : !system.nodes().empty() ? kToleranceSolids
                                                  : kToleranceBodies;

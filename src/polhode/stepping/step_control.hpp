@@ -17,6 +17,8 @@ inline constexpr double kStretch = 1e-3;
 inline constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kMinFactor = 0.3, kMaxFactor = 1.6;
 /// Ratios of the companions' errors to the error at order 6 and at order 8, measured.
 inline constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
+/// Degree of the extrapolation in time by which members of an extrapolated step are predicted.
+inline constexpr int kMemberDegree = 2;
 /// Round-off of an error estimate, for positions at the origin and relative to the distance from
 /// it: the smallest attainable error.
 inline constexpr double kMinError = 1e-15, kStepRoundOff = 2.2e-16;

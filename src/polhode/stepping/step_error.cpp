@@ -51,4 +51,13 @@ double jump_difference(const System& system, const State& x, const State& y, dou
   return H * std::max(most, per_length * distance(x.node_v, y.node_v));
 }
 
+double extent(const System& system) {
+  const State& start = system.initial_state();
+  double far = 0.0;
+  for (int b = 0; b < system.body_count(); ++b)
+    far = std::max(far, system.motion(start, b).r.norm());
+  for (const double x : start.node_x) far = std::max(far, std::abs(x));
+  return far;
+}
+
 }  // namespace polhode

@@ -18,4 +18,8 @@ namespace polhode {
 [[nodiscard]] double jump_difference(const System& system, const State& x, const State& y,
                                      double H);
 
+/// Largest distance of a body or node from the origin at the start, for the rounding of positions
+/// [m].
+[[nodiscard]] double extent(const System& system);
+
 }  // namespace polhode

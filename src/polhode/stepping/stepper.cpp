@@ -7,6 +7,7 @@
 #include <polhode/dynamics/composition.hpp>
 #include <polhode/stepping/contradiction.hpp>
 #include <polhode/stepping/drive_kinks.hpp>
+#include <polhode/stepping/extrapolation_table.hpp>
 #include <polhode/stepping/local_error.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/start.hpp>
@@ -29,9 +30,10 @@ struct Stepper::Impl {
   GeneralizedAlpha ga;
   StepControl control;
   TimeBreaks breaks;
-  std::vector<double> stages;          ///< Of the order.
-  std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
-  State before, companion;             ///< Copies to return to and to compare with.
+  std::vector<double> stages{1.0};          ///< Of the order.
+  std::vector<double> check2, check4;       ///< Of the companions of orders 2 and 4.
+  std::optional<ExtrapolationTable> table;  ///< Instead of a composition.
+  State before, companion;                  ///< Copies to return to and to compare with.
   StepReach reach;
   double least_error = kMinError;  ///< Rounding of positions [-].
 
@@ -42,13 +44,11 @@ struct Stepper::Impl {
         kinks(s),
         ga(g),
         control(c),
-        breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : kBreaksComposed) {
-    double far = 0.0;
-    for (int b = 0; b < s.body_count(); ++b)
-      far = std::max(far, s.motion(s.initial_state(), b).r.norm());
-    for (const double x : s.initial_state().node_x) far = std::max(far, std::abs(x));
-    least_error = std::max(kMinError, kStepRoundOff * far / s.length_scale()) *
+        breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : std::max(kBreaksComposed, c.order - 3)) {
+    least_error = std::max(kMinError, kStepRoundOff * extent(s) / s.length_scale()) *
                   (c.order > 2 ? kRoundOffComposed : 1.0);
+    if (c.extrapolated) table.emplace(s, c.order);
+    if (table) return;
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
     // Companions have doubled stages too: an odd number of single steps would end with the
@@ -58,7 +58,8 @@ struct Stepper::Impl {
   }
 
   [[nodiscard]] bool automatic() const { return !control.step; }
-  [[nodiscard]] bool composed() const { return stages.size() > 1; }
+  /// Whether a step consists of several single ones.
+  [[nodiscard]] bool composed() const { return stages.size() > 1 || table; }
   [[nodiscard]] double least_step() const {
     if (control.min_step > 0.0) return control.min_step;
     return automatic() ? 1e-9 * control.horizon : 1e-6 * *control.step;
@@ -140,15 +141,15 @@ struct Stepper::Impl {
 
   /// Runs stages from the state; on failure the state is not restored.
   NewtonReport run_stages(State& state, const std::vector<double>& list, double H, bool fresh) {
+    if (table) return table->advance(state, list, H, single, control.newton, fresh);
     NewtonReport report;
-    NewtonOptions newton = control.newton;
     SingleStep::Predictor predictor;
     predictor.degree = list.size() > 1 ? 1 : (automatic() ? 1 : 3);
     predictor.remember = automatic() && control.order == 2 && list.size() == 1;
     int iterations = 0;
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (fresh && i == 0) predictor.degree = -1;
-      report = single.take(state, list[i] * H, newton, predictor);
+      report = single.take(state, list[i] * H, control.newton, predictor);
       if (fresh && i == 0) predictor.degree = list.size() > 1 ? 1 : 3;
       iterations += report.iterations;
       report.iterations = iterations;
@@ -310,11 +311,11 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   const double allowed = allowed_error(from, H);
   std::optional<double> error;
   if (composed()) {
-    error = composed_error(from, reached, H);
+    error = table ? table->difference() : composed_error(from, reached, H);
     reached.error_last =
         std::max(std::min(error.value_or(0.0), control.tolerance), kNoiseFades * noise(from));
     if (error) error = std::max(*error, 0.1 * from.error_last);
-    power = 1.0 / (control.order + 1.0);
+    power = 1.0 / (table ? control.order - 1.0 : control.order + 1.0);
     safety = kSafetyComposed;
   } else if (from.past_count < 2 && !fresh) {
     // find_length() has tried these steps, or they are as short as the impact's. With contacts
@@ -360,7 +361,7 @@ void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int i
     reach.count(state.t, verdict.error, requested_error(H), verdict.noise);
     return;
   }
-  const int per_stage = iterations / static_cast<int>(stages.size());
+  const int per_stage = iterations / (table ? table->substeps() : static_cast<int>(stages.size()));
   state.easy_steps = per_stage <= kFewIterations ? state.easy_steps + 1 : 0;
   if (state.dt_next > 0.0 && H < *control.step && state.easy_steps >= kEasySteps) {
     state.dt_next = std::min(*control.step, 2.0 * std::max(H, state.dt_next));

@@ -17,7 +17,8 @@ namespace polhode {
 
 /// Choice of steps.
 struct StepControl {
-  int order = 2;               ///< 2, 4, 6 or 8.
+  int order = 2;               ///< 2, 4, 6 or 8; extrapolated also 10 and 12.
+  bool extrapolated = false;   ///< Orders above 2 by extrapolation, not by composition.
   std::optional<double> step;  ///< Fixed step H [s]; absent: automatic.
   double tolerance = 1e-6;     ///< Error of automatic steps [-], see docs/theory/step_control.md.
   double horizon = 1.0;        ///< Duration of the run, over which order 2 spreads its error [s].
@@ -27,7 +28,8 @@ struct StepControl {
   bool conserving = true;  ///< Potentials in discrete-gradient form.
 };
 
-/// Advances a state: predictor, Newton, acceptance, step control, compositions of higher order.
+/// Advances a state: predictor, Newton, acceptance, step control, compositions and
+/// extrapolations of higher order.
 class Stepper {
  public:
   /// @param kernels  SIMD kernels for predictor and end of step; the same for every engine.

@@ -16,8 +16,8 @@ void check_type(Section& section, const std::string& type) {
       section.fault(key, "cannot be combined with type " + type, "It requires " + goes_with + ".");
   };
   if (type != "dynamics")
-    for (const char* key : {"duration", "step", "tolerance", "rho_inf", "order", "momentum_rate",
-                            "min_step", "max_step", "smooth_multipliers"})
+    for (const char* key : {"duration", "step", "tolerance", "rho_inf", "order", "method",
+                            "momentum_rate", "min_step", "max_step", "smooth_multipliers"})
       refuse(key, "type dynamics");
   if (type == "dynamics") refuse("load_steps", "type statics or modes");
   if (type != "statics") refuse("history", "type statics");
@@ -98,10 +98,11 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
                   "cannot be combined with a fixed step of " + shown(*analysis.step) + " s",
                   "A tolerance chooses the steps: leave 'step' out, write 'step: auto', or leave "
                   "out 'tolerance'.");
-  if (analysis.order == 4 && !analysis.step)
+  const bool extrapolated = analysis.method == "extrapolation";
+  if (analysis.order == 4 && !analysis.step && !extrapolated)
     section.fault("order", "order 4 has no error estimate, so it cannot choose its steps",
                   "Give a step, or use order 2, 6 or 8.");
-  if (analysis.order.value_or(2) > 2 && analysis.rho_inf < 1.0)
+  if (analysis.order.value_or(2) > 2 && analysis.rho_inf < 1.0 && !extrapolated)
     section.fault("order",
                   format("order {} cannot be combined with rho_inf {}", *analysis.order,
                          shown(analysis.rho_inf)),

@@ -181,6 +181,7 @@ void check_model(ReadContext& context, const SourceNode& root) {
     context.fault(*root.find("contacts"), "contacts",
                   format("cannot be combined with an analysis of type {}", model.analysis.type),
                   "Contact of bodies needs type: dynamics: let the model come to rest there.");
+  if (model.analysis.method == "extrapolation") return;  // require_smooth() checks it
   if (order > 2 && model.contacts.present)
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
                   format("order {} cannot be combined with contacts", order),
@@ -191,7 +192,7 @@ void check_model(ReadContext& context, const SourceNode& root) {
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
                   format("order {} cannot be combined with {}", order, what),
                   format("Orders above 2 contain stages backward in time, where {} would add "
-                         "energy: use order 2.",
+                         "energy: use order 2, or method: extrapolation.",
                          named));
   };
   for (const SolidSpec& solid : model.solids) {

@@ -51,12 +51,19 @@ const FieldTable& analysis_fields() {
            .member = &AnalysisSpec::rho_inf},
           {.name = "order",
            .kind = kChoice,
-           .meaning =
-               "Order of accuracy. 4, 6 and 8 are for models without dampers at rho_inf = 1.",
-           .standard = "2, or chosen from the tolerance",
-           .choices = {"2", "4", "6", "8"},
+           .meaning = "Order of accuracy. Above 2 for smooth models at rho_inf = 1; by composition "
+                      "4, 6 and 8 for models without dampers.",
+           .standard = "2, or chosen from the tolerance; 6 by extrapolation",
+           .choices = {"2", "4", "6", "8", "10", "12"},
            .member = &AnalysisSpec::order,
            .may_change = true},
+          {.name = "method",
+           .kind = kChoice,
+           .meaning = "How orders above 2 are reached: composition conserves energy exactly but "
+                      "steps backwards too; extrapolation also suits models that dissipate.",
+           .standard = "composition",
+           .choices = {"composition", "extrapolation"},
+           .member = &AnalysisSpec::method},
           {.name = "momentum_rate",
            .kind = kChoice,
            .meaning = "Formula for the rate of the angular momentum; the kinematic forms are for "
@@ -94,8 +101,9 @@ const FieldTable& analysis_fields() {
            .kind = kNumber,
            .meaning = "Largest scaled increment at convergence; with the conjugate gradient solver "
                       "for contacts the largest residual over the weight of a body.",
-           .standard = "1e-5; 1e-7 at orders 6 and 8; 1e-6 with solids or the conjugate gradient "
-                       "solver; 1e-12 with contacts, 1e-9 with contacts of solids, 1e-7 of cables",
+           .standard = "1e-5; 1e-7 at orders 6 and 8, 1e-9 by extrapolation; 1e-6 with solids or "
+                       "the conjugate gradient solver; 1e-12 with contacts, 1e-9 with contacts of "
+                       "solids, 1e-7 of cables",
            .range = {0.0, 1e-2, true},
            .member = &AnalysisSpec::newton_tolerance,
            .may_change = true},
