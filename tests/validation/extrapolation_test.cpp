@@ -226,6 +226,28 @@ TEST(ExtrapolatedGovernor, ReachesOneMillionthIn2500SubstepsAndTenToMinusNineIn6
   EXPECT_LE(error(300, 8), 1e-9);  // 6,000
 }
 
+// Positions of the slider against a run of order 8 with steps of 2.5 ms. The estimate is that of
+// the column before the last one, so the error is well below the tolerance.
+TEST(Extrapolation, AutomaticStepsMeetTheirTolerance) {
+  Model model = model_of(kSlider, "");
+  const Vec exact = positions(run_to(model, 0.5, 200, 8));
+  int steps = 0;
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    Model chosen = model;
+    chosen.analysis.method = "extrapolation";
+    chosen.analysis.order = 6;
+    chosen.analysis.step.reset();
+    chosen.analysis.tolerance = tolerance;
+    Simulation s(std::move(chosen));
+    const RunSummary r = s.run();
+    EXPECT_EQ(r.end, RunEnd::finished) << r.message;
+    EXPECT_LT((positions(s) - exact).lpNorm<Eigen::Infinity>(), tolerance) << tolerance;
+    EXPECT_GT(r.steps, steps);
+    steps = static_cast<int>(r.steps);
+  }
+  EXPECT_LT(steps, 500);
+}
+
 TEST(Extrapolation, ContinuesARunFromItsStateWithTheSameBits) {
   Model model = model_of(kFourBar, "speed: \"12 + 3*sin(5*t)\"");
   const Simulation once = run_to(model, 0.4, 20, 6);

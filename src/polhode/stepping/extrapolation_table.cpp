@@ -15,6 +15,10 @@ namespace polhode {
 
 namespace {
 
+/// Rates of constraints after their projection, relative to the largest speed: rounding is a
+/// thousandth of it, and rows that contradict each other leave a part of the speed.
+constexpr double kProjected = 1e-10;
+
 /// Cayley vector of the rotation of a unit quaternion: χ = 2 tan(φ/2) n.
 Vec3 cayley_vector(const Quat& q) { return 2.0 / q.w() * q.vec(); }
 
@@ -94,7 +98,12 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
       report.reason = "the extrapolated positions cannot be assembled";
       return report;
     }
-    static_cast<void>(solver_->project_velocities(state));
+    const VelocityReport velocities = solver_->project_velocities(state);
+    if (!(velocities.residual <= kProjected * velocities.scale)) {
+      report.converged = false;
+      report.reason = "the extrapolated velocities cannot be projected onto the joints";
+      return report;
+    }
   }
   bond_nodes(*system_, state);
   return report;
