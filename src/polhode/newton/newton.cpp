@@ -189,6 +189,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   if (close &&
       (kept || (iterated_again && report.increments.back() < kRoundOffBelow * options.tolerance))) {
     report.constraints = engine.check(state, trial);  // multipliers have grown since the last one
+    if (!report.constraints.broken.empty()) return fail(report.constraints.broken), report;
     accept();
     report.hard = true;
     return report;
