@@ -17,7 +17,7 @@ namespace {
 
 /// Rates of constraints after their projection, relative to the largest speed: rounding is a
 /// thousandth of it, and rows that contradict each other leave a part of the speed.
-constexpr double kProjected = 1e-10;
+constexpr double kProjectedRates = 1e-10;
 
 /// Cayley vector of the rotation of a unit quaternion: χ = 2 tan(φ/2) n.
 Vec3 cayley_vector(const Quat& q) { return 2.0 / q.w() * q.vec(); }
@@ -99,7 +99,7 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
       return report;
     }
     const VelocityReport velocities = solver_->project_velocities(state);
-    if (!(velocities.residual <= kProjected * velocities.scale)) {
+    if (!(velocities.residual <= kProjectedRates * velocities.scale)) {
       report.converged = false;
       report.reason = "the extrapolated velocities cannot be projected onto the joints";
       return report;
