@@ -248,6 +248,36 @@ TEST(Extrapolation, AutomaticStepsMeetTheirTolerance) {
   EXPECT_LT(steps, 500);
 }
 
+constexpr const char* kControlled = R"yaml(
+format: 1
+gravity: [0, 0, -9.81]
+bodies:
+  cart: {mass: 2, inertia: [1e-3, 1e-3, 1e-3]}
+  bob: {mass: 0.5, inertia: [1e-4, 1e-4, 1e-4], position: [0, 0, -0.4]}
+joints:
+  rail: {type: prismatic, bodies: [ground, cart], at: [0, 0, 0], axis: x}
+  pin: {type: revolute, bodies: [cart, bob], at: [0, 0, 0], axis: y}
+loads:
+  push: {type: linear_motor, joint: rail, force: {controller: place}}
+  damper: {type: torsional_spring, joint: pin, damping: 0.05}
+controllers:
+  place: {joint: rail, channel: z, setpoint: 0.3, proportional: 20, derivative: 4, integral: 5, sample: 50 ms}
+events:
+  free: {when: {joint: rail, channel: z, above: 0.12}, off: [damper]}
+analysis: {duration: 1 s, step: 1 ms}
+)yaml";
+
+// A controller that is sampled and an event that is located within a step: both end steps.
+TEST(Extrapolation, KeepsItsOrderWithASampledControllerAndAnEvent) {
+  const Model model = model_of(kControlled);
+  const Vec exact = positions(run_to(model, 1.0, 160, 10));
+  const auto error = [&](int n) {
+    return (positions(run_to(model, 1.0, n, 6)) - exact).lpNorm<Eigen::Infinity>();
+  };
+  EXPECT_LT(error(20), 1e-8);
+  EXPECT_GE(order_between(error, 20, 40), 5.0);
+}
+
 TEST(Extrapolation, ContinuesARunFromItsStateWithTheSameBits) {
   Model model = model_of(kFourBar, "speed: \"12 + 3*sin(5*t)\"");
   const Simulation once = run_to(model, 0.4, 20, 6);

@@ -13,8 +13,8 @@ namespace polhode {
 [[nodiscard]] std::vector<int> extrapolation_substeps(int order);
 
 /// Weights with which results of n_j equal steps give the value at the step length zero. The error
-/// of a symmetric step has an expansion in even powers of its length, of which they remove as many
-/// terms as there are members but one. @eq{extrapolation-weights}
+/// of a symmetric step has an expansion in even powers of its length. Its leading terms cancel, one
+/// fewer than there are members. @eq{extrapolation-weights}
 [[nodiscard]] std::vector<double> member_weights(const std::vector<int>& substeps);
 
 }  // namespace polhode

@@ -296,9 +296,9 @@ void RigidContacts::add_to(ConstraintCheck& check, const State& state, const Tri
   check.broken = broken();
 }
 
-/// What a step with these rows must not do, with the bodies that do it: overlap at its end, as a
-/// point that no row is for, or gain energy, as a direction of the mean of both ends that is not
-/// that of the change of the gap. Empty: nothing. Both vanish with the length of the step.
+/// Fault of the step, with its bodies: an overlap at the end, at a point without a row, or a gain
+/// of energy by rows whose direction at the middle is not that of the change of the gap. Empty:
+/// none. Both vanish with the length of the step.
 std::string RigidContacts::broken() const {
   const double accuracy = kRoundings * touching_;
   if (const auto pair = impulsive_->passed(steps_))

@@ -11,7 +11,7 @@ struct ConstraintCheck {
   int worst_row = -1;
   double work_defect = 0.0;  ///< Σ |λ g|: possible energy leak of the multipliers [J].
   double work_scale = 0.0;  ///< Σ |λ|(ℓ + |x|): times round-off, the smallest attainable leak [J].
-  std::string broken;       ///< What a contact does that it must not; empty: nothing.
+  std::string broken;       ///< Fault of a contact in the step; empty: none.
 };
 
 }  // namespace polhode

@@ -14,7 +14,7 @@ namespace {
 /// Rates and coordinates within which a law is searched for kinks [SI].
 constexpr double kLawRange = 0x1p20;
 
-/// Kinds whose histories or curves extrapolation does not combine.
+/// Kinds of loads with histories or curves that extrapolation does not combine.
 constexpr std::array<std::string_view, 4> kNotCombined = {"point_on_curve", "curve_on_curve",
                                                           "point_on_surface", "rolling"};
 

@@ -50,7 +50,7 @@ struct ExpandedModel {
 /// @throws ModelErrors, FileError
 [[nodiscard]] ExpandedModel expanded_model(const std::string& file, const std::string& mesh_folder,
                                            const Overrides& overrides = {});
-/// The same of a file, with paths relative to its folder.
+/// Import of a file, with paths relative to its folder.
 [[nodiscard]] ExpandedModel expanded_model(const std::string& file,
                                            const Overrides& overrides = {});
 
