@@ -21,6 +21,7 @@ LAYERS = [
     ["statics"],
     ["compile"],
     ["simulation"],
+    ["gradient"],
     ["io/text"],
     ["io/schema", "io/importers"],
     ["io/read"],

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/gradient/differentiable.hpp>
+#include <polhode/simulation/method.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Loads whose step seen backwards is the same step, and whose memory is a function of the motion
+/// or of the start alone: each has a test against differences of runs.
+constexpr std::array<std::string_view, 16> kDifferentiable = {"force",
+                                                              "moment",
+                                                              "spring_damper",
+                                                              "potential",
+                                                              "axial_force",
+                                                              "vector_damper",
+                                                              "bushing",
+                                                              "attraction",
+                                                              "drag",
+                                                              "torsional_spring",
+                                                              "translational_spring",
+                                                              "rotary_motor",
+                                                              "linear_motor",
+                                                              "gear",
+                                                              "screw",
+                                                              "rolling"};
+
+[[noreturn]] void refuse_gradient(const std::string& where, const std::string& what,
+                                  const std::string& hint) {
+  throw InputError(where, what, hint);
+}
+
+void check_settings(const AnalysisSpec& a) {
+  if (a.type != "dynamics")
+    refuse_gradient("analysis.type", format("is {}, but gradients are those of a motion", a.type),
+                    "Use type: dynamics");
+  if (!a.step)
+    refuse_gradient("analysis.step",
+                    "is automatic: the lengths of the steps would depend on the parameters",
+                    "Give a fixed step for a gradient");
+  if (a.rho_inf != 1.0)
+    refuse_gradient("analysis.rho_inf",
+                    format("is {:g}, but gradients exist for rho_inf: 1 only", a.rho_inf),
+                    "Use rho_inf: 1");
+  if (is_extrapolated(a))
+    refuse_gradient("analysis.method", "is extrapolation, which has no gradient yet",
+                    "Use order: 2, or a composition of order 4, 6 or 8");
+  if (a.momentum_rate != "momentum")
+    refuse_gradient(
+        "analysis.momentum_rate",
+        format("is {}, but gradients exist for the momentum form only", a.momentum_rate),
+        "Use momentum_rate: momentum");
+  if (a.jacobian == "never" || a.jacobian == "every_step")
+    refuse_gradient(
+        "analysis.jacobian",
+        format("is {}: its steps are not solved to the digits of a gradient", a.jacobian),
+        "Use jacobian: automatic");
+  // The last increment e leaves e (e/e_last)², which is what the gradient then is wrong by.
+  if (a.newton_tolerance > 1e-5)
+    refuse_gradient(
+        "analysis.newton_tolerance",
+        format("is {:g}: its steps are not solved to the digits of a gradient", a.newton_tolerance),
+        "Use at most 1e-5, or leave it out");
+}
+
+void check_joint(const JointSpec& joint) {
+  const std::string where = format("joints.{}", joint.name);
+  if (joint.limits || joint.angle_limits || joint.type == "slack_link")
+    refuse_gradient(where,
+                    "has stops: where an impact falls within a step depends on the parameters, and "
+                    "the gradient on the steps would be a wrong number",
+                    "Leave its limits out if they are not reached");
+  if (joint.friction)
+    refuse_gradient(where, "has dry friction, whose memory has no derivative yet",
+                    "Use a damper, or leave the friction out");
+  if (joint.enforcement)
+    refuse_gradient(where, "is held by springs, which have no derivative yet",
+                    "Leave its enforcement out");
+  if (joint.breaks.force || joint.breaks.moment)
+    refuse_gradient(where, "may break, which is an event within a step",
+                    "Leave its strength out if it is not reached");
+  if (joint.motion)
+    refuse_gradient(where, "has a frame that moves as prescribed, which has no derivative yet",
+                    "Use a motor in a joint");
+}
+
+void check_load(const LoadSpec& load) {
+  const std::string where = format("loads.{}", load.name);
+  if (load.type.ends_with("_servo")) {
+    const auto given = [&](const char* key) {
+      const auto found = load.parameters.find(key);
+      return found != load.parameters.end() && found->second != 0.0;
+    };
+    if (load.drive == "speed" || given("integral") || given("max_moment") || given("max_force"))
+      refuse_gradient(where,
+                      "is a servo with an integral or a limit, whose memory has no derivative yet",
+                      "Use stiffness and damping of an angle or displacement alone");
+    return;
+  }
+  if (std::find(kDifferentiable.begin(), kDifferentiable.end(), load.type) == kDifferentiable.end())
+    refuse_gradient(where, format("is of type {}, which has no derivative yet", load.type),
+                    "Use a force, a spring, a damper, a motor or a gear");
+  if (!std::holds_alternative<std::monostate>(load.of_motion))
+    refuse_gradient(where, "is a function in code, whose derivative is not known",
+                    "Give an expression or a table in the model");
+}
+
+}  // namespace
+
+void require_differentiable(const Model& model, const System& system) {
+  check_settings(model.analysis);
+  if (model.contacts.present || system.contacts())
+    refuse_gradient("contacts",
+                    "make the gradient of a run on fixed steps a wrong number: where an impact "
+                    "falls within a step depends on the parameters",
+                    "Leave contacts out, or compare runs");
+  if (!model.events.empty())
+    refuse_gradient(format("events.{}", model.events.front().name),
+                    "is within a step whose length depends on the parameters", "Leave events out");
+  if (!model.controllers.empty())
+    refuse_gradient(format("controllers.{}", model.controllers.front().name),
+                    "has a memory without derivative",
+                    "Use springs, dampers and motors instead of a controller");
+  if (!model.solids.empty())
+    refuse_gradient(format("solids.{}", model.solids.front().name),
+                    "is a deformable solid, which has no derivative yet", "Use rigid bodies");
+  if (!model.cables.empty())
+    refuse_gradient(format("cables.{}", model.cables.front().name),
+                    "is a cable, which has no derivative yet", "Use a spring_damper");
+  for (const BeamSpec& beam : model.beams)
+    if (beam.section.relaxation_time > 0.0)
+      refuse_gradient(format("beams.{}", beam.name),
+                      "is viscous, and its memory has no derivative yet",
+                      "Leave the relaxation time of its section out");
+  for (const JointSpec& joint : model.joints) check_joint(joint);
+  for (const LoadSpec& load : model.loads) check_load(load);
+  for (const InteractionRef& ref : system.interactions()) {
+    const InteractionTraits& traits = system.traits(ref);
+    if (!traits.set_valued && !traits.has_barrier && !traits.compliant) continue;
+    refuse_gradient(format("{} '{}'", system.group(ref.group).kind(), system.name(ref)),
+                    "has a law that jumps, at which there is no derivative",
+                    "Use a law without jumps");
+  }
+}
+
+}  // namespace polhode

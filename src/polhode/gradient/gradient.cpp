@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Sparse>
+
+#include <polhode/core/clock.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/gradient/differentiable.hpp>
+#include <polhode/gradient/gradient.hpp>
+#include <polhode/gradient/parameter_shift.hpp>
+#include <polhode/gradient/run_tape.hpp>
+#include <polhode/gradient/step_derivative.hpp>
+#include <polhode/simulation/method.hpp>
+#include <polhode/simulation/simulation_details.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Part of a body's forces that the step seen backwards may lack: round-off of stiff forces is
+/// 1e-10 of them, a law that is not symmetric has parts of order of the step.
+constexpr double kSymmetric = 1e-6;
+/// Difference of a velocity from that of its step, as a part of the speed, that is a jump.
+constexpr double kJumped = 1e-5;
+/// Remainder of a linear system of a step above which it has no solution: geometry that breaks a
+/// loop leaves 1e-2 or more, all else 1e-14.
+constexpr double kUnsolved = 1e-8;
+/// Difference of times, as a part of the step, within which they are equal.
+constexpr double kSameInstant = 1e-6;
+
+/// A place of an outcome on the tape, with its weight.
+struct Place {
+  std::size_t state = 0;
+  double weight = 1.0;
+};
+
+std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader,
+                             const System& system, const RunTape& tape, double step) {
+  const auto t = [&](std::size_t end) { return tape.states[tape.ends[end]].t; };
+  const std::size_t last = tape.ends.size() - 1;
+  switch (outcome.at) {
+    case Outcome::At::end:
+      return {{tape.ends[last], 1.0}};
+    case Outcome::At::time:
+      for (std::size_t k = 0; k <= last; ++k)
+        if (std::abs(t(k) - outcome.time) <= kSameInstant * step) return {{tape.ends[k], 1.0}};
+      throw InputError(
+          "the outcome",
+          format("'{}' is at {:.9g} s, where no step ends", outcome.text, outcome.time),
+          "Name a multiple of analysis.step within the run");
+    case Outcome::At::mean: {
+      if (reader.of_velocity())
+        throw InputError("the outcome", format("'{}' is a mean of velocities", outcome.text),
+                         "Use the position at the end, which is the mean times the duration");
+      std::vector<Place> list;
+      for (std::size_t k = 0; k <= last; ++k) {
+        const double before = k > 0 ? t(k) - t(k - 1) : 0.0;
+        const double after = k < last ? t(k + 1) - t(k) : 0.0;
+        list.push_back({tape.ends[k], 0.5 * (before + after) / (t(last) - t(0))});
+      }
+      return list;
+    }
+    case Outcome::At::maximum:
+      break;
+  }
+  // At the maximum the derivative by its time is zero.
+  std::size_t at = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k <= last; ++k) {
+    const double value = reader.value(system, tape.states[tape.ends[k]]);
+    if (value <= most) continue;
+    most = value;
+    at = k;
+  }
+  return {{tape.ends[at], 1.0}};
+}
+
+/// Factors that give the numbers of a state comparable sizes.
+Vec state_scales(const System& system, double duration) {
+  Vec scale(kStateNumbers * system.body_count());
+  for (int b = 0; b < system.body_count(); ++b)
+    for (int i = 0; i < kStateNumbers; ++i)
+      scale[kStateNumbers * b + i] =
+          (i % 6 < 3 ? system.length_scale() : 1.0) / (i < 6 ? 1.0 : duration);
+  return scale;
+}
+
+/// Differentiation of a run that lies on a tape.
+class Differentiation {
+ public:
+  Differentiation(const Simulation& simulation, const RunTape& tape, const SystemMap& map,
+                  const GradientRequest& request)
+      : system_(simulation.system()),
+        model_(simulation.model()),
+        tape_(tape),
+        request_(request),
+        derivative_(system_),
+        scales_(state_scales(system_, model_.analysis.duration)) {
+    for (const Outcome& outcome : request.outcomes) {
+      readers_.emplace_back(model_, map, outcome.channel);
+      places_.push_back(places_of(outcome, readers_.back(), system_, tape, *model_.analysis.step));
+    }
+    for (const GradientParameter& parameter : request.parameters)
+      shifts_.emplace_back(parameter, simulation, map, request.outcomes);
+  }
+
+  std::vector<OutcomeGradient> compute() {
+    const std::size_t n = shifts_.size();
+    gradients_.resize(readers_.size());
+    weights_.resize(readers_.size());
+    for (std::size_t k = 0; k < readers_.size(); ++k) find_weights(k);
+    start_ = Mat::Zero(derivative_.state_size(), static_cast<Eigen::Index>(n));
+    for (std::size_t j = 0; j < n; ++j) {
+      start_.col(static_cast<Eigen::Index>(j)) =
+          shifts_[j].start_derivative(system_, tape_.states.front());
+      shifts_[j].begin(tape_.states.front());
+    }
+    go_forward();
+    go_backward();
+    return gradients_;
+  }
+
+ private:
+  struct Weight {
+    std::size_t state;
+    Vec by_state;
+  };
+
+  /// Value, explicit derivative by parameters and weights on states of an outcome.
+  void find_weights(std::size_t k) {
+    OutcomeGradient& g = gradients_[k];
+    g.outcome = request_.outcomes[k].text;
+    g.unit = readers_[k].unit();
+    g.by.assign(shifts_.size(), 0.0);
+    for (const Place& place : places_[k]) {
+      const State& state = tape_.states[place.state];
+      g.value += place.weight * readers_[k].value(system_, state);
+      g.time = state.t;
+      weights_[k].push_back({place.state, place.weight * readers_[k].by_state(system_, state)});
+      for (std::size_t j = 0; j < shifts_.size(); ++j)
+        g.by[j] += place.weight * shifts_[j].of_value(k, state);
+    }
+  }
+
+  /// Direction of the parameters in which tangent and adjoint are compared: none is zero, none is
+  /// much larger than the others.
+  [[nodiscard]] Vec direction() const {
+    Vec d(static_cast<Eigen::Index>(shifts_.size()));
+    for (Eigen::Index j = 0; j < d.size(); ++j)
+      d[j] = shifts_[static_cast<std::size_t>(j)].step() *
+             (1.5 + std::cos(1.0 + 2.4 * static_cast<double>(j))) * (j % 2 == 0 ? 1.0 : -1.0);
+    return d;
+  }
+
+  /// Weight of an outcome on a state, null if it has none there.
+  [[nodiscard]] const Weight* weight_at(std::size_t k, std::size_t state) const {
+    const std::vector<Weight>& list = weights_[k];  // by rising state
+    const auto found =
+        std::lower_bound(list.begin(), list.end(), state,
+                         [](const Weight& w, std::size_t at) { return w.state < at; });
+    return found != list.end() && found->state == state ? &*found : nullptr;
+  }
+
+  void check_step(std::size_t i) const {
+    const double t = tape_.states[i].t;
+    const auto body = [&](int b) { return system_.bodies()[static_cast<std::size_t>(b)].name; };
+    if (derivative_.jump() > kJumped)
+      throw InputError(format("bodies.{}", body(derivative_.jumped_body())),
+                       format("has a velocity that jumps at t = {:.6g} s", t),
+                       "Use drives without kinks: a jump has no derivative yet");
+    if (derivative_.asymmetry() > kSymmetric)
+      throw InputError(format("bodies.{}", body(derivative_.least_symmetric())),
+                       format("feels a force at t = {:.6g} s that is not symmetric in time: {:.1g} "
+                              "of it differs in the step seen backwards",
+                              t, derivative_.asymmetry()),
+                       "Leave out loads with memory, one after the other, to find it");
+  }
+
+  void check_solved() const {
+    if (derivative_.defect() <= kUnsolved) return;
+    std::string names;
+    for (const GradientParameter& p : request_.parameters)
+      names += (names.empty() ? "" : ", ") + p.path;
+    throw InputError(
+        names,
+        format("{} no derivative: the joints of a loop could not move along ({:.1g} of the "
+               "equations of a step stay open)",
+               request_.parameters.size() == 1 ? "has" : "have", derivative_.defect()),
+        "Choose parameters that keep the mechanism, or make a joint of the loop "
+        "compliant with a bushing");
+  }
+
+  void go_forward() {
+    const Vec d = direction();
+    Mat tangents = request_.forward ? start_ : Mat(start_ * d);
+    tangent_.assign(readers_.size(), Vec::Zero(tangents.cols()));
+    const auto look = [&](std::size_t state) {
+      for (std::size_t k = 0; k < readers_.size(); ++k)
+        if (const Weight* w = weight_at(k, state))
+          tangent_[k] += tangents.transpose() * w->by_state;
+    };
+    std::vector<BodyStep> steps(static_cast<std::size_t>(system_.body_count()) + 1,
+                                BodyStep::ground(0.5));
+    std::vector<Eigen::Triplet<double>> entries;
+    look(0);
+    for (std::size_t i = 0; i < tape_.lengths.size(); ++i) {
+      const State &from = tape_.states[i], &to = tape_.states[i + 1];
+      Trial step = derivative_.trial(from, to, tape_.lengths[i]);
+      step.context.conserving = model_.analysis.conserving;
+      step.context.tangents = false;
+      for (int b = 0; b < system_.body_count(); ++b)
+        steps[static_cast<std::size_t>(b)] = body_step(system_, from, step, b);
+      entries.clear();
+      for (std::size_t j = 0; j < shifts_.size(); ++j) {
+        shifts_[j].add_residual(from, step, steps, static_cast<int>(j), entries);
+        shifts_[j].commit(step, steps);
+      }
+      Eigen::SparseMatrix<double> by(derivative_.unknowns(), start_.cols());
+      by.setFromTriplets(entries.begin(), entries.end());
+      step.context.tangents = true;
+      derivative_.linearize(from, to, step);
+      check_step(i);
+      const Mat rhs = request_.forward ? Mat(by) : Mat(by * d);
+      for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
+        Vec dy = tangents.col(c);
+        derivative_.push(rhs.col(c), dy);
+        tangents.col(c) = dy;
+      }
+      check_solved();
+      residuals_.push_back(std::move(by));
+      look(i + 1);
+    }
+  }
+
+  void go_backward() {
+    const std::size_t outcomes = readers_.size();
+    std::vector<Vec> mu(outcomes, Vec::Zero(derivative_.state_size()));
+    std::vector<double> first(outcomes, 0.0), most(outcomes, 0.0);
+    std::vector<Vec> by(outcomes, Vec::Zero(start_.cols()));
+    const auto look = [&](std::size_t state) {
+      for (std::size_t k = 0; k < outcomes; ++k) {
+        if (const Weight* w = weight_at(k, state)) {
+          mu[k] += w->by_state;
+          first[k] += w->by_state.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
+        }
+        most[k] = std::max(most[k], mu[k].cwiseProduct(scales_).lpNorm<Eigen::Infinity>());
+      }
+    };
+    look(tape_.states.size() - 1);
+    for (std::size_t i = tape_.lengths.size(); i-- > 0;) {
+      const State &from = tape_.states[i], &to = tape_.states[i + 1];
+      Trial step = derivative_.trial(from, to, tape_.lengths[i]);
+      step.context.conserving = model_.analysis.conserving;
+      derivative_.linearize(from, to, step);
+      for (std::size_t k = 0; k < outcomes; ++k) {
+        if (mu[k].isZero(0.0)) continue;
+        by[k] += residuals_[i].transpose() * derivative_.pull(mu[k]);
+      }
+      look(i);
+    }
+    check_solved();
+    const Vec d = direction();
+    for (std::size_t k = 0; k < outcomes; ++k) {
+      by[k] += start_.transpose() * mu[k];
+      OutcomeGradient& g = gradients_[k];
+      g.growth = first[k] > 0.0 ? most[k] / first[k] : 0.0;
+      double along = 0.0, size = 0.0, other = 0.0;
+      for (Eigen::Index j = 0; j < d.size(); ++j) {
+        along += by[k][j] * d[j];
+        size += std::abs(by[k][j] * d[j]);
+        if (request_.forward) other += tangent_[k][j] * d[j];
+        g.by[static_cast<std::size_t>(j)] += request_.forward ? tangent_[k][j] : by[k][j];
+      }
+      if (!request_.forward) other = tangent_[k][0];
+      g.spot_check = size > 0.0 ? std::abs(along - other) / size : 0.0;
+    }
+  }
+
+  const System& system_;
+  const Model& model_;
+  const RunTape& tape_;
+  const GradientRequest& request_;
+  StepDerivative derivative_;
+  Vec scales_;
+  std::vector<OutcomeReader> readers_;
+  std::vector<std::vector<Place>> places_;
+  std::vector<ParameterShift> shifts_;
+  std::vector<std::vector<Weight>> weights_;
+  std::vector<Eigen::SparseMatrix<double>> residuals_;
+  Mat start_;
+  std::vector<Vec> tangent_;
+  std::vector<OutcomeGradient> gradients_;
+};
+
+}  // namespace
+
+RunGradient differentiate(const Model& model, const GradientRequest& request) {
+  if (request.outcomes.empty())
+    throw InputError("the outcome", "is missing",
+                     "Name a channel, such as bodies.rod.position.x@end");
+  if (request.parameters.empty())
+    throw InputError("the parameters", "are missing",
+                     "Name paths of the model, such as bodies.rod.mass");
+  SystemMap map;
+  const System system = build_system(model, &map);
+  require_differentiable(model, system);
+  RunGradient result;
+  result.step = *model.analysis.step;
+  result.order = method_order(system, model.analysis);
+  double at = wall_clock();
+  Simulation simulation(model);
+  const RunTape tape = run_onto_tape(simulation);
+  result.run_seconds = wall_clock() - at;
+  at = wall_clock();
+  result.steps = static_cast<std::int64_t>(tape.lengths.size());
+  result.outcomes = Differentiation(simulation, tape, map, request).compute();
+  result.gradient_seconds = wall_clock() - at;
+  return result;
+}
+
+}  // namespace polhode

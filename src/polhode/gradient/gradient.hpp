@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <polhode/gradient/outcome.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// A number of a model by which is differentiated.
+struct GradientParameter {
+  std::string path{};                       ///< As in the model file: "bodies.rod.mass".
+  double value = 0.0;                       ///< In the unit below.
+  std::string unit{};                       ///< As written in the file, or "" if it has none there.
+  std::function<Model(double value)> at{};  ///< The model with another value.
+  double step = 0.0;  ///< Of differences; 0: a thousandth of the value, or of 1.
+};
+
+struct GradientRequest {
+  std::vector<GradientParameter> parameters{};
+  std::vector<Outcome> outcomes{};
+  /// Tangents of all parameters instead of the adjoint of each outcome: for more outcomes than
+  /// parameters.
+  bool forward = false;
+};
+
+/// Gradient of one outcome.
+struct OutcomeGradient {
+  std::string outcome{}, unit{};
+  double value = 0.0, time = 0.0;  ///< The outcome, and the time at which it is taken [s].
+  std::vector<double> by{};        ///< By parameter, per its unit.
+  /// Largest growth of the adjoint backwards over the run [-]: a perturbation grows as much.
+  double growth = 0.0;
+  /// Difference of tangent and adjoint in one direction of all parameters, as a part of the sum of
+  /// its terms [-].
+  double spot_check = 0.0;
+};
+
+/// Gradients of the outcomes of a run, exact for its steps.
+struct RunGradient {
+  std::vector<OutcomeGradient> outcomes;
+  std::int64_t steps = 0;  ///< Stages, at orders above 2.
+  double step = 0.0;       ///< Length [s].
+  int order = 2;
+  double run_seconds = 0.0, gradient_seconds = 0.0;
+};
+
+/// Runs a model with its fixed step, and differentiates that run: tangents and the adjoint of its
+/// own steps, at their solutions. Steps, their lengths and the times of breaks are kept.
+/// @throws InputError for what has no gradient, see require_differentiable(), and for parameters
+/// that change more than numbers; SolveError for a run that does not end.
+[[nodiscard]] RunGradient differentiate(const Model& model, const GradientRequest& request);
+
+/// Reasons to doubt a gradient, a sentence each: steps that are too long for it, a motion that
+/// forgets its parameters, round-off.
+/// @param bars  Of that outcome, see error_bars(); may be empty.
+[[nodiscard]] std::vector<std::string> gradient_doubts(const RunGradient& run, std::size_t outcome,
+                                                       const GradientRequest& request,
+                                                       const std::vector<double>& bars);
+
+/// Differences of gradients with the step h and with h/2, from which errors of the first follow.
+/// @param half  That with half the step. @returns by outcome and parameter.
+[[nodiscard]] std::vector<std::vector<double>> error_bars(const RunGradient& own,
+                                                          const RunGradient& half);
+
+}  // namespace polhode

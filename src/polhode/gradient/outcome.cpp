@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdlib>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/gradient/outcome.hpp>
+#include <polhode/gradient/step_derivative.hpp>
+#include <polhode/math/quaternion.hpp>
+#include <polhode/stepping/instant.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Step of differences by the state, as a part of the mechanism's size, in radians, or of a speed.
+/// Its fourth power is the truncation error of order four, 1e-12; round-off is 1e-16 over it.
+constexpr double kStateStep = 1e-3;
+
+int component_of(const std::string& name) {
+  return name.size() == 1 && name[0] >= 'x' && name[0] <= 'z' ? name[0] - 'x' : -1;
+}
+
+[[noreturn]] void refuse_channel(const std::string& channel) {
+  throw InputError(
+      "the outcome", format("'{}' is not a position or velocity", channel),
+      "Name bodies.NAME.position.x, bodies.NAME.velocity.x, bodies.NAME.angular_velocity.x, "
+      "probes.NAME.x, probes.NAME.vx or joints.NAME.COORDINATE; forces and accelerations have no "
+      "gradient yet");
+}
+
+}  // namespace
+
+Outcome parse_outcome(const std::string& text) {
+  Outcome outcome{.text = text, .channel = text};
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos) return outcome;
+  outcome.channel = text.substr(0, at);
+  const std::string when = text.substr(at + 1);
+  if (when == "end") return outcome;
+  if (when == "mean" || when == "max") {
+    outcome.at = when == "mean" ? Outcome::At::mean : Outcome::At::maximum;
+    return outcome;
+  }
+  char* end = nullptr;
+  outcome.time = std::strtod(when.c_str(), &end);
+  if (when.empty() || *end != '\0' || !(outcome.time >= 0.0))
+    throw InputError("the outcome", format("'{}' has an unknown time '{}'", text, when),
+                     "Write CHANNEL@end, CHANNEL@mean, CHANNEL@max, or CHANNEL@0.25 with a time in "
+                     "seconds");
+  outcome.at = Outcome::At::time;
+  return outcome;
+}
+
+OutcomeReader::OutcomeReader(const Model& model, const SystemMap& map, const std::string& channel)
+    : channel_(channel) {
+  const std::size_t first = channel.find('.'), last = channel.rfind('.');
+  if (first == std::string::npos || last == first) refuse_channel(channel);
+  const std::string list = channel.substr(0, first), end = channel.substr(last + 1);
+  std::string name = channel.substr(first + 1, last - first - 1);
+  if (list == "bodies") {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos) refuse_channel(channel);
+    const std::string quantity = name.substr(dot + 1);
+    name = name.substr(0, dot);
+    component_ = component_of(end);
+    what_ = quantity == "velocity"           ? What::velocity
+            : quantity == "angular_velocity" ? What::turn
+                                             : What::position;
+    if (component_ < 0 || (what_ == What::position && quantity != "position"))
+      refuse_channel(channel);
+    set_body(model, map, name);
+  } else if (list == "probes") {
+    const ProbeSpec& probe = model.output.probes[static_cast<std::size_t>(model.probe_index(name))];
+    if (probe.kind == "joint") {
+      set_joint(model, map, probe.target, end);
+      return;
+    }
+    if (probe.kind != "body" || probe.seen_from != kGround) refuse_channel(channel);
+    const bool v = end.size() == 2 && end[0] == 'v', w = end.size() == 2 && end[0] == 'w';
+    what_ = v ? What::velocity : w ? What::turn : What::position;
+    component_ = component_of(v || w ? end.substr(1) : end);
+    if (component_ < 0) refuse_channel(channel);
+    set_body(model, map, probe.target);
+    Z_ = probe.point;
+  } else if (list == "joints") {
+    set_joint(model, map, name, end);
+  } else {
+    refuse_channel(channel);
+  }
+  if (what_ != What::coordinate)
+    unit_ = what_ == What::position ? "m" : what_ == What::velocity ? "m/s" : "rad/s";
+}
+
+void OutcomeReader::set_body(const Model& model, const SystemMap& map, const std::string& name) {
+  const int body = model.body_index(name);
+  body_ = body == kGround ? kGround : map.body[static_cast<std::size_t>(body)];
+  if (body_ == kGround)
+    throw InputError("the outcome",
+                     format("'{}' is of a fixed body, which depends on nothing", channel_),
+                     "Name a moving body");
+}
+
+void OutcomeReader::set_joint(const Model& model, const SystemMap& map, const std::string& name,
+                              const std::string& coordinate) {
+  const int index = model.joint_index(name);
+  joint_ = map.joint[static_cast<std::size_t>(index)];
+  what_ = What::coordinate;
+  coordinate_ = coordinate;
+  unit_ = coordinate.empty() || coordinate[0] == 'r' ? "rad" : "m";
+}
+
+double OutcomeReader::value(const System& system, const State& state) const {
+  if (what_ == What::coordinate) {
+    const Joint& joint = joint_at(system, joint_);
+    const std::vector<std::string> names = joint.coordinate_names();
+    const auto found = std::find(names.begin(), names.end(), coordinate_);
+    if (found == names.end()) {
+      std::string known;
+      for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+      throw InputError("the outcome",
+                       format("joint '{}' has no coordinate '{}'", joint.name, coordinate_),
+                       known.empty() ? std::string("Name a position of a body")
+                                     : format("Its coordinates: {}", known));
+    }
+    const PairView view =
+        system.instant(state, system.interactions()[static_cast<std::size_t>(joint_)], nullptr);
+    return joint.coordinates(view.step()).value[static_cast<std::size_t>(found - names.begin())];
+  }
+  if (what_ == What::position) {
+    const BodyMotion m = system.motion(state, body_);
+    return (m.r + m.q * Z_)[component_];
+  }
+  State projected = state;
+  (void)project_velocities(system, projected);
+  const BodyMotion m = system.motion(projected, body_);
+  const Vec3 omega = m.omega();
+  return (what_ == What::turn ? omega : Vec3(m.v + omega.cross(m.q * Z_)))[component_];
+}
+
+Vec OutcomeReader::by_state(const System& system, const State& state) const {
+  Vec by = Vec::Zero(kStateNumbers * system.body_count());
+  if (what_ == What::position) {
+    const BodyMotion m = system.motion(state, body_);
+    const Vec3 e = Vec3::Unit(component_);
+    by.segment<3>(kStateNumbers * body_) = e;
+    by.segment<3>(kStateNumbers * body_ + 3) = (m.q * Z_).cross(e);
+    return by;
+  }
+  std::vector<int> bodies;
+  int numbers = kStateNumbers;
+  if (what_ == What::coordinate) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(joint_)];
+    for (const int b : {ref.a, ref.b})
+      if (b != kGround) bodies.push_back(b);
+    numbers = 6;
+  } else {
+    for (int b = 0; b < system.body_count(); ++b) bodies.push_back(b);
+  }
+  State moved = state;
+  for (const int b : bodies) {
+    const BodyMotion m = system.motion(state, b);
+    const int slot = system.slot(b);
+    for (int i = 0; i < numbers; ++i) {
+      const double size = i < 3   ? system.length_scale()
+                          : i < 6 ? 1.0
+                          : i < 9 ? std::max(m.v.norm(), system.length_scale())
+                                  : std::max(m.W.norm(), 1.0);
+      const double d = kStateStep * size;
+      const auto at = [&](double x) {
+        BodyMotion n = m;
+        const Vec3 step = x * Vec3::Unit(i % 3);
+        if (i < 3)
+          n.r += step;
+        else if (i < 6)
+          n.q = (quaternion_from_rotation_vector(step) * m.q).normalized();
+        else if (i < 9)
+          n.v += step;
+        else
+          n.W += step;
+        moved.set_motion(slot, n);
+        return value(system, moved);
+      };
+      by[kStateNumbers * b + i] =
+          (2.0 / 3.0 * (at(d) - at(-d)) - 1.0 / 12.0 * (at(2.0 * d) - at(-2.0 * d))) / d;
+    }
+    moved.set_motion(slot, m);
+  }
+  return by;
+}
+
+}  // namespace polhode

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Sparse>
+
+#include <polhode/equations/newton_system.hpp>
+#include <polhode/gradient/changed_items.hpp>
+#include <polhode/gradient/gradient.hpp>
+#include <polhode/gradient/outcome.hpp>
+#include <polhode/simulation/simulation_details.hpp>
+
+namespace polhode {
+
+/// A parameter's four neighbouring models, and central differences of order four between them:
+/// (2/3)(f₁ − f₋₁) − (1/12)(f₂ − f₋₂) over the step. @eq{parameter-difference}
+///
+/// Each has its own memory of interactions, which follows the motion of the run that is
+/// differentiated: constants that the start sets, and integrals of prescribed speeds, depend on the
+/// parameter, turns counted do not.
+class ParameterShift {
+ public:
+  /// @throws InputError if a neighbour cannot start, or differs from the base in more than numbers.
+  ParameterShift(const GradientParameter& parameter, const Simulation& base, const SystemMap& map,
+                 const std::vector<Outcome>& outcomes);
+
+  [[nodiscard]] double step() const { return step_; }
+  /// Derivative of the state at the start. @param start  Of the base.
+  [[nodiscard]] Vec start_derivative(const System& system, const State& start) const;
+  /// Memory at the start of the run that is differentiated.
+  void begin(const State& start);
+  /// Derivative of the residual of a step at fixed motion, by body, then rows: appended as entries
+  /// of a column.
+  /// @param steps  Of the bodies, the ground last. @param step  Without tangents.
+  void add_residual(const State& from, const Trial& step, std::span<const BodyStep> steps,
+                    int column, std::vector<Eigen::Triplet<double>>& entries);
+  /// Takes the memories to the end of the step.
+  void commit(const Trial& step, std::span<const BodyStep> steps);
+  /// Derivative of an outcome's value at a fixed state.
+  [[nodiscard]] double of_value(std::size_t outcome, const State& state) const;
+
+ private:
+  struct Neighbour {
+    std::unique_ptr<Simulation> simulation;
+    std::unique_ptr<InteractionSweep> sweep;  ///< Of the interactions that may differ.
+    std::vector<double> history, residual;
+    std::vector<OutcomeReader> readers;
+  };
+  template <class Value>
+  [[nodiscard]] auto difference(const Value& of) const;
+
+  void set_items(const System& system, const ChangedItems& changed);
+  /// Whether interactions that count as equal are so, bit for bit.
+  [[nodiscard]] bool others_are_equal(const Trial& step, std::span<const BodyStep> steps) const;
+  void evaluate(Neighbour& n, const State& from, const Trial& step,
+                std::span<const BodyStep> steps) const;
+
+  const System* system_;
+  std::string path_;
+  double step_ = 0.0;
+  bool checked_ = false;
+  std::vector<int> bodies_, interactions_;  ///< That may differ.
+  /// Residuals that may differ: their places among bodies, six each, and rows, and by body and row
+  /// the number among these, or −1.
+  std::vector<int> places_, of_body_, of_row_;
+  std::array<Neighbour, 4> at_;  ///< At +1, −1, +2, −2 steps.
+};
+
+}  // namespace polhode
