@@ -52,6 +52,7 @@ void add_within_option(CLI::App& command, CertifyRequest& request);
 // Each in one file of commands/.
 Action add_run(CLI::App& command);
 Action add_certify(CLI::App& command);
+Action add_gradient(CLI::App& command);
 Action add_modes(CLI::App& command);
 Action add_view(CLI::App& command);
 Action add_plot(CLI::App& command);

@@ -17,6 +17,8 @@ const std::vector<Command>& commands() {
       {"run", "Run a model and write its results", add_run},
       {"certify", "Run a model at three step sizes and report error bars of its results",
        add_certify},
+      {"gradient", "Derivatives of outcomes of a run by parameters of its model, with error bars",
+       add_gradient},
       {"modes", "Natural frequencies and shapes of a model about its equilibrium", add_modes},
       {"view", "Show results, or a model before it runs, as an animation in a browser", add_view},
       {"plot", "Draw channels of results over time, as an SVG picture", add_plot},

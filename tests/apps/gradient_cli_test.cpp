@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "command_line.hpp"
+
+namespace polhode::gradient_cli_tests {
+namespace {
+
+using test::CommandLine;
+using testing::HasSubstr;
+
+TEST_F(CommandLine, PrintsGradientsWithErrorBars) {
+  const auto result = run({"gradient", "model.yaml", "--set", "analysis.duration=0.2", "--of",
+                           "probes.tip.z@end", "--with", "bodies.upper.density,gravity.2"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  for (const char* text :
+       {"probes.tip.z@end = ", "parameter", "elasticity", "error bar", "bodies.upper.density",
+        "gravity.2", "tangent against adjoint", "20 steps of 10 ms, kept as they are"})
+    EXPECT_THAT(result.out, HasSubstr(text));
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(CommandLine, PrintsGradientsAsJson) {
+  write("throw.yaml",
+        "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+        "  ball: {mass: 1, inertia: [1, 1, 1], position: [0, 0, 1], velocity: [0, 0, 2]}\n"
+        "analysis: {duration: 0.5 s, step: 10 ms}\n");
+  for (const char* way : {"--no-bars", "--forward"}) {
+    const auto result = run({"gradient", "throw.yaml", way, "--json", "--of",
+                             "bodies.ball.position.z", "--with", "bodies.ball.velocity.2"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NEAR(std::stod(value(result.out, "gradient")), 0.5, 1e-11) << result.out;
+    EXPECT_EQ(value(result.out, "error_bar") == "null", std::string(way) == "--no-bars");
+  }
+}
+
+TEST_F(CommandLine, RefusesAGradientByNameWithExitCode3) {
+  const auto result = run({"gradient", "model.yaml", "--set", "analysis.rho_inf=0.8", "--of",
+                           "probes.tip.z", "--with", "gravity.2"});
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("rho_inf"));
+  EXPECT_THAT(result.err, HasSubstr("is 0.8, but gradients exist for rho_inf: 1 only"));
+  EXPECT_EQ(run({"gradient", "model.yaml", "--of", "probes.tip.z"}).code, 2);
+}
+
+}  // namespace
+}  // namespace polhode::gradient_cli_tests
