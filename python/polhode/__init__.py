@@ -25,6 +25,7 @@ from ._native import version as __version__
 if TYPE_CHECKING:
     from . import rotations
     from ._equations import StepEquations, step_equations
+    from ._gradient import Gradient, gradient
     from ._linear import StateSpace, inverse_dynamics, linearize
     from ._modes import Matrices, Mode, Modes, matrices, modes, spin_modes
     from ._result import Result, open
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 # Loaded at first use: NumPy takes longer to import than everything else.
 _LATER = {
     "_equations": ["StepEquations", "step_equations"],
+    "_gradient": ["Gradient", "gradient"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes", "spin_modes"],
     "_result": ["Result", "open"],
@@ -47,9 +49,9 @@ for _error in (Fault, ModelError, NotConverged):
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
-    "BodyReading", "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
-    "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations", "__version__", "fit", "from_text",
-    "inverse_dynamics", "linearize", "load", "matrices", "modes", "open", "rotations", "run", "spin_modes",
+    "BodyReading", "Fault", "Fit", "Gradient", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged",
+    "Result", "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations", "__version__", "fit", "from_text",
+    "gradient", "inverse_dynamics", "linearize", "load", "matrices", "modes", "open", "rotations", "run", "spin_modes",
     "step_equations", "sweep",
 ]
 

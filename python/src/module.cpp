@@ -12,4 +12,5 @@ NB_MODULE(_native, m) {
   polhode::python::bind_rotations(m);
   polhode::python::bind_modes(m);
   polhode::python::bind_equations(m);
+  polhode::python::bind_gradient(m);
 }

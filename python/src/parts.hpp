@@ -29,6 +29,7 @@ void bind_results_reader(nb::module_& m);
 void bind_rotations(nb::module_& m);
 void bind_modes(nb::module_& m);
 void bind_equations(nb::module_& m);
+void bind_gradient(nb::module_& m);
 
 using Array = nb::ndarray<nb::numpy, double>;
 using Integers = nb::ndarray<nb::numpy, std::int64_t>;
