@@ -46,7 +46,7 @@ struct Sheet {
       place(patches[k], at);
       PatchFoot foot = nearest_of_patch(patches[k], p, at, width);
       EXPECT_GE(foot.distance, least_distance(patches[k], p, at));
-      if (foot.distance >= best.distance) continue;
+      if (best.patch >= 0 && !is_nearer(foot, best)) continue;
       best = foot;
       best.patch = static_cast<int>(k);
     }
@@ -80,6 +80,22 @@ TEST(SurfacePatch, TheNearestPointIsStationary) {
     EXPECT_NEAR(y.norm(), foot.distance, 1e-14);
     for (int k = 0; k < foot.free_count; ++k)
       EXPECT_LT(std::abs(s.sum(patch, foot.along[k]).dot(y)), 1e-12) << trial;
+  }
+}
+
+// Over the edge of two faces, to rounding, the foot is free across it, as it is beside it: without
+// that the tangent of a point's force would have the stiffness of an edge there.
+// @tests{patch-weights}
+TEST(SurfacePatch, TheNearestPointIsFreeAcrossEdges) {
+  for (const double bend : {0.1, -0.1}) {
+    Sheet s(4);
+    for (Vec3& x : s.x) x[2] = bend * std::abs(x[0] - 2.0);
+    for (const double y : {2.0, 2.3})
+      for (const double aside : {0.0, 1e-17, 3e-16, -3e-16, 1e-14, -1e-12, 1e-9}) {
+        const PatchFoot foot = s.nearest({2.0 + aside, y, 1e-5}, kRoundedEdge);
+        EXPECT_EQ(foot.free_count, 2) << bend << ' ' << y << ' ' << aside;
+        EXPECT_LT(foot.outwards, 1e-14);
+      }
   }
 }
 

@@ -55,6 +55,31 @@ TEST(SoftOnSoft, FindsTheEquilibriumFromEveryStart) {
   }
 }
 
+/// Centred, nothing draws the punch aside: at every number of load steps there is no lateral force,
+/// and the equilibrium is stable and the same one. In long load steps Newton's method used to end
+/// with points on the border of the other surface, in one of many unstable equilibria with lateral
+/// forces up to 2 N; and the tangent at feet on the edge between two smooth faces was that of an
+/// edge, with the negative stiffness of pressure over distance.
+// @tests{patch-force}
+TEST(SoftOnSoft, RemainsSymmetricAndStableAtAnyNumberOfLoadSteps) {
+  for (const double gap : {0.1, 0.2, 0.3}) {
+    double first = 0.0;
+    for (const char* steps : {"", ", load_steps: 1", ", load_steps: 20"}) {
+      SCOPED_TRACE(std::to_string(gap) + steps);
+      Simulation s(io::read_model_text(
+          blocks(0.0, 0.0, gap, "", "", format("{{type: statics{}}}", steps)), "punch.yaml"));
+      const RunSummary summary = s.run();
+      ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+      ASSERT_TRUE(summary.statics.has_value());
+      EXPECT_EQ(summary.statics->unstable, 0);
+      const Vec3 force = s.contact(0).force;
+      EXPECT_LT(force.head<2>().norm(), 1e-7);
+      if (first == 0.0) first = force[2];
+      EXPECT_NEAR(force[2] / first, 1.0, 1e-7);
+    }
+  }
+}
+
 /// In motion, at a coarse step, a tenth and a hundredth of it, the balances close at each. The
 /// coarse step is a tenth of the time in which the punch comes down, and may be refused; the others
 /// are not, and they take fewer iterations the shorter they are: at a kink of the gap iterations

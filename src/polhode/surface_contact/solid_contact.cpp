@@ -106,7 +106,7 @@ SolidContact::Nearest SolidContact::nearest(const Field& field, std::span<const 
     vertices_of(patch, field.vertices, x);
     if (least_distance(patch, p, x) > best.distance) continue;
     const PatchFoot foot = nearest_of_patch(patch, p, x, width_[static_cast<std::size_t>(point)]);
-    if (!(foot.distance < best.distance)) continue;
+    if (best.triangle >= 0 && !is_nearer(foot, best.foot)) continue;
     best.triangle = foot.triangle;
     best.foot = foot;
     best.foot.patch = k;

@@ -35,6 +35,8 @@ constexpr int kMostSteps = 60;
 constexpr double kNoStep = 1e-15, kNewtonStep = 1e-6;
 /// Distance of ξ from an end of the face that is rounding.
 constexpr double kAtEnd = 1e-14;
+/// Rounding of a sum of the weighted positions of a patch, over the largest of them.
+constexpr double kPlaceRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// Weights of four points in a row and their derivatives. @eq{patch-weights}
 struct Row {
@@ -153,12 +155,17 @@ int free_on_triangle(const geometry::TriangleRegion& region, Point2 (&free)[2]) 
 
 /// Minimum of the distance over a square, by Newton's method with a line search.
 /// @param from  Positions of vertices relative to the point.
+/// @param rounding  Of these.
+/// @param outwards  See PatchFoot.
+/// @returns the number of directions in which the minimum is free. Over a rounded edge the surface
+/// goes on smoothly: a minimum there is one across it, too.
 int descend(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatch::kSize], double width,
-            Point2& xi, Point2 (&free)[2]) {
+            double rounding, Point2& xi, Point2 (&free)[2], double& outwards) {
   const auto half_square = [&](const Point2& at) {
     return 0.5 * sum(weights_at(patch, at, width).of[0], from).squaredNorm();
   };
-  bool held[2] = {false, false};
+  bool held[2] = {false, false}, across[2] = {false, false};
+  double over[2] = {0.0, 0.0};
   for (int k = 0; k < kMostSteps; ++k) {
     for (double& t : xi) t = t < kAtEnd ? 0.0 : t > 1.0 - kAtEnd ? 1.0 : t;
     const PatchWeights w = weights_at(patch, xi, width);
@@ -169,8 +176,14 @@ int descend(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatch::kSize], 
     Eigen::Matrix2d bend;
     const double mixed = r.dot(sum(w.of[4], from));
     bend << r.dot(sum(w.of[3], from)), mixed, mixed, r.dot(sum(w.of[5], from));
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; ++i) {
       held[i] = (xi[i] <= 0.0 && g[i] >= 0.0) || (xi[i] >= 1.0 && g[i] <= 0.0);
+      const double ratio = patch.ratio[static_cast<std::size_t>(2 * i + (xi[i] > 0.5 ? 1 : 0))];
+      const Vec3& r_i = i == 0 ? r_x : r_y;
+      const double size = r_i.norm();
+      over[i] = held[i] && ratio > 0.0 ? std::abs(g[i]) / size : 0.0;
+      across[i] = held[i] && ratio > 0.0 && over[i] <= rounding + kAtEnd * size;
+    }
     const Eigen::Matrix2d whole = H + bend;
     const auto definite = [&] {
       for (int i = 0; i < 2; ++i)
@@ -188,8 +201,8 @@ int descend(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatch::kSize], 
     // A parameter at its end that should move inwards, but is drawn outwards by the other one,
     // waits for that.
     for (int i = 0; i < 2; ++i) {
-      const bool outwards = (xi[i] <= 0.0 && step[i] < 0.0) || (xi[i] >= 1.0 && step[i] > 0.0);
-      if (held[i] || !outwards) continue;
+      const bool leaves = (xi[i] <= 0.0 && step[i] < 0.0) || (xi[i] >= 1.0 && step[i] > 0.0);
+      if (held[i] || !leaves) continue;
       step = newton(held[0] || i == 0, held[1] || i == 1);
       if (!(step.lpNorm<Eigen::Infinity>() > kNoStep)) step = -g[i] / H(i, i) * Point2::Unit(i);
       break;
@@ -208,9 +221,10 @@ int descend(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatch::kSize], 
     }
     xi = to;
   }
+  outwards = std::max(over[0], over[1]);
   int count = 0;
   for (int i = 0; i < 2; ++i)
-    if (!held[i]) free[count++] = Point2::Unit(i);
+    if (!held[i] || across[i]) free[count++] = Point2::Unit(i);
   return count;
 }
 
@@ -241,8 +255,14 @@ PatchFoot nearest_of_patch(const SurfacePatch& patch, const Vec3& p,
   Point2 xi = start.xi, free[2];
   PatchFoot foot;
   foot.triangle = patch.first_triangle + start.triangle;
-  foot.free_count = patch.corners == 4 ? descend(patch, from, width, xi, free)
-                                       : free_on_triangle(start.region, free);
+  double place = p.lpNorm<Eigen::Infinity>();
+  for (int a = 0; a < SurfacePatch::kSize; ++a)
+    if (patch.vertex[static_cast<std::size_t>(a)] >= 0)
+      place = std::max(place, x[a].lpNorm<Eigen::Infinity>());
+  foot.rounding = kPlaceRounding * place;
+  foot.free_count = patch.corners == 4
+                        ? descend(patch, from, width, foot.rounding, xi, free, foot.outwards)
+                        : free_on_triangle(start.region, free);
   const PatchWeights w = weights_at(patch, xi, width);
   foot.xi = xi[0];
   foot.eta = xi[1];
@@ -258,6 +278,14 @@ PatchFoot nearest_of_patch(const SurfacePatch& patch, const Vec3& p,
                               (free[k][0] * free[l][1] + free[k][1] * free[l][0]) * w.of[4][a] +
                               free[k][1] * free[l][1] * w.of[5][a];
   return foot;
+}
+
+/// Order of feet by distance, and by the gradient where distances differ by rounding: they do so
+/// over an edge, for feet on both of its faces that are off by the root of rounding.
+bool is_nearer(const PatchFoot& a, const PatchFoot& b) {
+  if (std::abs(a.distance - b.distance) > std::max(a.rounding, b.rounding))
+    return a.distance < b.distance;
+  return a.outwards != b.outwards ? a.outwards < b.outwards : a.distance < b.distance;
 }
 
 std::vector<SurfacePatch> smooth_patches(const MeshSurface& surface, const std::vector<Vec3>& x) {

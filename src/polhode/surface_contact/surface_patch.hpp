@@ -47,6 +47,10 @@ struct PatchFoot {
   int triangle = -1;  ///< Of the patch, the nearest one.
   double xi = 0.0, eta = 0.0;
   double distance = 0.0;  ///< [m]
+  double rounding = 0.0;  ///< Of the distance [m].
+  /// Way along the surface to the nearest point where that lies beyond a rounded edge of the patch,
+  /// on the neighbour [m].
+  double outwards = 0.0;
   Weights M{};
   /// Derivatives of M by the directions in which the point is free, and their second derivatives,
   /// by 1 and 1, 1 and 2, 2 and 2.
@@ -58,6 +62,9 @@ struct PatchFoot {
 /// @param width  ω, as a part of the faces.
 [[nodiscard]] PatchFoot nearest_of_patch(const SurfacePatch& patch, const Vec3& p,
                                          const Vec3 (&x)[SurfacePatch::kSize], double width);
+
+/// Whether the foot a of a point is the nearest point, rather than b on another patch.
+[[nodiscard]] bool is_nearer(const PatchFoot& a, const PatchFoot& b);
 
 /// Lower bound of the distance, without search.
 [[nodiscard]] double least_distance(const SurfacePatch& patch, const Vec3& p,
