@@ -13,7 +13,7 @@ namespace polhode::surface_contact {
 /// A point of a mesh: Σ N_a x_a.
 struct MeshPoint {
   /// Nodes of two points on patches and of a point of a face, together.
-  static constexpr int kMaxNodes = 41;
+  static constexpr int kMaxNodes = 65;
   int count = 0;
   int node[kMaxNodes]{};
   double N[kMaxNodes]{};

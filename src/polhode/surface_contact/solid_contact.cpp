@@ -47,9 +47,8 @@ void SolidContact::round_edges() {
     const Nearest n = nearest(start, found(s, p), p);
     if (n.triangle < 0) continue;
     const PatchFoot& f = n.foot;
-    for (const double side : {f.xi, 1.0 - f.xi, f.eta, 1.0 - f.eta})
-      if (side > kOnEdge)
-        width_[static_cast<std::size_t>(p)] = std::min(width_[static_cast<std::size_t>(p)], side);
+    width_[static_cast<std::size_t>(p)] =
+        clear_width(patches_[static_cast<std::size_t>(f.patch)], f.xi, f.eta, kOnEdge);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include <polhode/geometry/nearest.hpp>
 #include <polhode/surface_contact/surface_patch.hpp>
+#include <polhode/surface_contact/triangle_patch.hpp>
 
 namespace polhode::surface_contact {
 
@@ -63,19 +64,9 @@ Row row_of(double t, double before, double after, double width) {
   return r;
 }
 
-/// M and its derivatives by ξ, η, ξξ, ξη, ηη.
-struct PatchWeights {
-  PatchFoot::Weights of[6];
-};
-
 PatchWeights weights_at(const SurfacePatch& patch, const Point2& xi, double width) {
+  if (patch.corners == 3) return triangle_weights(patch, xi, width);
   PatchWeights w{};
-  if (patch.corners == 3) {
-    w.of[0] = {1.0 - xi[0] - xi[1], xi[0], xi[1]};
-    w.of[1] = {-1.0, 1.0, 0.0};
-    w.of[2] = {-1.0, 0.0, 1.0};
-    return w;
-  }
   const Row a = row_of(xi[0], patch.ratio[0], patch.ratio[1], width),
             b = row_of(xi[1], patch.ratio[2], patch.ratio[3], width);
   const double* const by_a[6] = {a.m, a.d, a.m, a.dd, a.d, a.m};
@@ -109,7 +100,6 @@ Vec3 sum(const PatchFoot::Weights& w, const Vec3 (&x)[SurfacePatch::kSize]) {
 struct Start {
   Point2 xi;
   int triangle = 0;
-  geometry::TriangleRegion region;
 };
 
 Start nearest_triangle(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatch::kSize]) {
@@ -125,7 +115,6 @@ Start nearest_triangle(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatc
     const double d = region.nearest.squaredNorm();
     if (!(d < least)) continue;
     least = d;
-    best.region = region;
     best.triangle = k;
     const Vec3 e = b - a, f = c - a, q = region.nearest - a;
     const double ee = e.squaredNorm(), ef = e.dot(f), ff = f.squaredNorm();
@@ -138,19 +127,6 @@ Start nearest_triangle(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatc
       best.xi = {u, v};
   }
   return best;
-}
-
-/// Directions in which the nearest point of a triangle is free.
-int free_on_triangle(const geometry::TriangleRegion& region, Point2 (&free)[2]) {
-  if (region.kind == geometry::TriangleRegion::corner) return 0;
-  if (region.kind == geometry::TriangleRegion::edge) {
-    const Point2 edge[3] = {{1.0, 0.0}, {-1.0, 1.0}, {0.0, -1.0}};
-    free[0] = edge[region.k];
-    return 1;
-  }
-  free[0] = {1.0, 0.0};
-  free[1] = {0.0, 1.0};
-  return 2;
 }
 
 /// Minimum of the distance over a square, by Newton's method with a line search.
@@ -231,10 +207,27 @@ int descend(const SurfacePatch& patch, const Vec3 (&from)[SurfacePatch::kSize], 
 }  // namespace
 
 /// A row's weights have the sum of absolute values 1 + (ratio + 1) ψ per side, ψ ≤ 4 ω/27.
+/// Those of a triangle are means of barycentric coordinates above −ω, two of them negative at most.
 double SurfacePatch::stretch() const {
+  if (corners == 3) return 1.0 + 4.0 * kRoundedTriangle;
   const double most = *std::max_element(ratio.begin(), ratio.end());
   const double row = most > 0.0 ? 1.0 + 2.0 * (most + 1.0) * 4.0 / 27.0 * kRoundedEdge : 1.0;
   return row * row;
+}
+
+double clear_width(const SurfacePatch& patch, double xi, double eta, double rounding) {
+  double width = kRoundedEdge;
+  if (patch.corners == 4) {
+    for (const double side : {xi, 1.0 - xi, eta, 1.0 - eta})
+      if (side > rounding) width = std::min(width, side);
+    return width;
+  }
+  for (const SurfacePatch::Beside& b : patch.beside) {
+    double outside = 0.0;
+    for (const auto& of : b.of) outside = std::max(outside, -(of[0] + of[1] * xi + of[2] * eta));
+    if (outside > rounding) width = std::min(width, outside);
+  }
+  return width;
 }
 
 double least_distance(const SurfacePatch& patch, const Vec3& p,
@@ -260,9 +253,10 @@ PatchFoot nearest_of_patch(const SurfacePatch& patch, const Vec3& p,
     if (patch.vertex[static_cast<std::size_t>(a)] >= 0)
       place = std::max(place, x[a].lpNorm<Eigen::Infinity>());
   foot.rounding = kPlaceRounding * place;
-  foot.free_count = patch.corners == 4
-                        ? descend(patch, from, width, foot.rounding, xi, free, foot.outwards)
-                        : free_on_triangle(start.region, free);
+  foot.free_count =
+      patch.corners == 4
+          ? descend(patch, from, width, foot.rounding, xi, free, foot.outwards)
+          : descend_triangle(patch, from, width, foot.rounding, xi, free, foot.outwards);
   const PatchWeights w = weights_at(patch, xi, width);
   foot.xi = xi[0];
   foot.eta = xi[1];
@@ -349,6 +343,7 @@ std::vector<SurfacePatch> smooth_patches(const MeshSurface& surface, const std::
           corner(*to->second.face, to->second.side + 3);
     }
   }
+  add_faces_beside(surface, x, kSharpPatch, patches);
   return patches;
 }
 
