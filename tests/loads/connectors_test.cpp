@@ -6,6 +6,7 @@
 
 #include <loads/load_samples.hpp>
 #include <polhode/loads/bushing.hpp>
+#include <polhode/loads/coordinate_row.hpp>
 #include <polhode/loads/drag.hpp>
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/joint_spring.hpp>
@@ -294,6 +295,35 @@ TEST(Connectors, GearsDoNoWorkAndHaveTheirTangents) {
         EXPECT_NEAR(t.g[0], 0.8 + 1.7 * 0.5, 1e-12) << seed;
       }
     }
+}
+
+// @tests{coupling-row}
+TEST(Connectors, CoupledCoordinatesDoNoWorkAndHaveTheirTangents) {
+  for (const bool slides : {false, true})
+    for (unsigned seed = 1; seed <= 4; ++seed)
+      for (const double rho_inf : {1.0, 0.5, 0.0}) {
+        auto sampled = sample(seed, context_of(rho_inf));
+        auto& d = sampled.d;
+        auto& m = sampled.motion;
+        slides ? slide(d) : hinge(d);
+        d.coupled = {{d.coordinate(), d.bodies, -1.7, 0.3}};
+        const CoordinateRow row(d, 0);
+        start(row, m);
+        m.lambda[0] = 1.3;
+        expect_derivative(
+            wrench_tangent(evaluate(row, m)),
+            [&](const Vec& x) -> Vec { return wrenches(evaluate(row, m, x)); }, "coupling");
+        const PairTerms t = evaluate(row, m);
+        Mat G(1, 12);
+        G << t.G_a.row(0), t.G_b.row(0);
+        expect_derivative(
+            G, [&](const Vec& x) -> Vec { return evaluate(row, m, x).g.head<1>(); },
+            "coupling row");
+        if (rho_inf != 1.0) continue;
+        EXPECT_NEAR(work_done(m, t), 1.3 * t.g[0], 1e-12) << seed;
+        if (slides) continue;
+        EXPECT_NEAR(t.g[0], -1.7 * 0.8, 1e-12) << seed;  // from 0.3 to 1.1
+      }
 }
 
 // @tests{surface-row}

@@ -16,6 +16,7 @@ TEST(LoadRegistry, AddsItemsOfTheKindItNames) {
     d.name = "load";
     d.bodies = {kGround, body};
     d.angle = FreeAngle{};
+    d.coupled = {{FreeAngle{}, d.bodies}};
     kind.add(system, d);
     system.finish();
     ASSERT_EQ(system.interactions().size(), 1U) << kind.name;
@@ -33,7 +34,7 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
                  "loads: the type 'torque' is not known. Use one of: force, moment, "
                  "spring_damper, potential, axial_force, vector_damper, bushing, attraction, drag, "
                  "torsional_spring, translational_spring, rotary_motor, linear_motor, "
-                 "rotary_servo, linear_servo, gear, screw, point_on_surface, "
+                 "rotary_servo, linear_servo, gear, screw, coupling, point_on_surface, "
                  "point_on_curve, curve_on_curve, rolling.");
   }
 }

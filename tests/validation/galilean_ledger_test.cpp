@@ -168,6 +168,7 @@ joints:
       {"linear_servo", slides + "loads: {it: {type: linear_servo, joint: a, "
                                 "speed: 2*t, stiffness: 50, damping: 9}}\n"},
       {"gear", hinges + "loads: {it: {type: gear, joints: [a, b], ratio: -2}}\n"},
+      {"coupling", hinges + "loads: {it: {type: coupling, joints: [a, b], factors: [-2]}}\n"},
       {"screw", slides + "loads: {it: {type: screw, joint: b, pitch: 50 mm}}\n"},
       {"point_on_surface",
        "loads: {it: {type: point_on_surface, bodies: "

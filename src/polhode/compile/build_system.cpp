@@ -17,11 +17,13 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/coordinate_motion.hpp>
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/gear_geometry.hpp>
 #include <polhode/model/switched_contacts.hpp>
 #include <polhode/model/velocity_jumps.hpp>
+#include <polhode/system/angle_quotient.hpp>
 
 namespace polhode {
 
@@ -214,6 +216,7 @@ class Builder {
     std::optional<FreeAngle> angle;
     std::optional<FreeDisplacement> displacement;
     std::optional<GearGeometry> gear;
+    std::vector<CoupledCoordinate> coupled;
     if (kind.place == LoadPlace::joint) {
       const int index = model_.joint_index(load.joint);
       const JointSpec& joint = model_.joints[static_cast<std::size_t>(index)];
@@ -244,7 +247,10 @@ class Builder {
                                      : "relates coordinates of one kind, which requires a ratio",
                          gear->mixed ? "Give radius alone" : "Give ratio alone");
     }
-    check_movable(where, kind.place == LoadPlace::body ? b : a, b);
+    if (kind.place == LoadPlace::row)
+      coupled = coupled_of(where, load);
+    else
+      check_movable(where, kind.place == LoadPlace::body ? b : a, b);
     for (const auto& [body, Z] : {std::pair(a, load.Z_a), std::pair(b, load.Z_b)})
       if (is_point_mass(body) && (kind.turns || !Z.isZero(0.0))) refuse_turning(where, body);
     LoadDescription d{
@@ -274,6 +280,7 @@ class Builder {
       d.bodies = gear->bodies;
       d.gear = gear->pair;
     }
+    d.coupled = std::move(coupled);
     d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
     if (load.of_motion.index() != 0) add_function(where, load, kind, d);
     kind.add(system_, d);
@@ -303,6 +310,34 @@ class Builder {
                        "Give one of them");
     d.of_motion = placed(load.of_motion, load.part_axes, load.body_fixed, kind.vector == "moment");
     if (!of_point) d.drive = key;
+  }
+
+  /// The coordinates of a coupling. Of its turns at the start the first one has as many as bring it
+  /// nearest to the row, the others none.
+  [[nodiscard]] std::vector<CoupledCoordinate> coupled_of(const std::string& where,
+                                                          const LoadSpec& load) {
+    std::vector<CoupledCoordinate> list;
+    const auto add = [&](const std::string& name, const std::string& coordinate, double factor) {
+      const auto index = static_cast<std::size_t>(model_.joint_index(name));
+      const Joint& joint = system_.group<Joint>().items()[index];
+      const JointSpec& of = model_.joints[index];
+      CoupledCoordinate c{free_coordinate(where, {&joint, coordinate}), joint.bodies, factor};
+      const auto at_start = [&](int body, int number) {
+        return number == kGround ? BodyStep::ground(1.0) : instant(body);
+      };
+      c.near = coordinate_at_n1(c.coordinate, at_start(of.a, joint.bodies.a),
+                                at_start(of.b, joint.bodies.b), 0.0);
+      list.push_back(c);
+    };
+    add(load.joint, load.coordinate, 1.0);
+    for (const CoordinateSpec& other : load.others)
+      add(other.joint, other.coordinate, -other.factor);
+    const auto offset = load.parameters.find("offset");
+    if (offset == load.parameters.end() || list[0].coordinate.index() != 0) return list;
+    double row = offset->second;
+    for (std::size_t k = 1; k < list.size(); ++k) row -= list[k].factor * list[k].near;
+    list[0].near = nearest_turn(list[0].near, row);
+    return list;
   }
 
   [[nodiscard]] GearGeometry gear_of(const std::string& where,
@@ -455,8 +490,11 @@ class Builder {
       interactions[system_.group(system_.interactions()[i].group).kind()].push_back(i);
     map_.joint = interactions[Joint::kKind];
     std::map<std::string, std::size_t> next;
-    for (const LoadSpec& load : model_.loads)
-      map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(next[load.type]++));
+    for (const LoadSpec& load : model_.loads) {
+      std::size_t& item = next[load.type];
+      map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(item));
+      item += 1 + load.others.size();  // parts of a row
+    }
     const auto take = [&](const std::string& kind, auto& things, auto&& size,
                           std::vector<std::vector<int>>& of) {
       std::size_t first = 0;

@@ -69,7 +69,8 @@ bool ContactCgEngine::suits(const System& system) {
   return std::none_of(system.interactions().begin(), system.interactions().end(),
                       [&](const InteractionRef& ref) {
                         const InteractionTraits& of = system.traits(ref);
-                        return of.compliant || (ref.rows == 0 && couples(ref) && of.reach > 0.0);
+                        return of.compliant || ref.shares_row() ||
+                               (ref.rows == 0 && couples(ref) && of.reach > 0.0);
                       });
 }
 

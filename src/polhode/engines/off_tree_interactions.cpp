@@ -126,6 +126,7 @@ void TreeEngine::add_extra(const OffTreeInteraction& x, const PairTerms& terms,
       }
   }
   if (x.loop >= 0) write_loop(x, terms, trial);
+  if (x.coupling == Coupling::all) write_coupling(x, terms);
 }
 
 void TreeEngine::write_loop(const OffTreeInteraction& x, const PairTerms& terms,
@@ -145,21 +146,27 @@ void TreeEngine::write_loop(const OffTreeInteraction& x, const PairTerms& terms,
   }
   // Columns of multipliers and rows of constraints; unknowns beyond them follow.
   const int columns = x.coupling == Coupling::couple ? x.translation_rows : x.rows;
-  const auto write_side = [&](int pair, const auto& B, const auto& G) {
+  const auto write_side = [&](int pair, bool fresh, const auto& B, const auto& G) {
     if (pair < 0) return;
     double* C = view_.pair_rows + 8 * pair;
     double* Rt = C + 6 * width;
+    if (!fresh) {  // after another part of the row, which is the loop's only one
+      for (int i = 0; i < 6; ++i) {
+        C[width * i] -= B(i, 0);
+        Rt[width * i] += G(0, i);
+      }
+      return;
+    }
     for (int i = 0; i < 12 * width; ++i) C[i] = 0.0;
     for (int k = 0; k < columns; ++k)
       for (int i = 0; i < 6; ++i) C[width * i + k] = -B(i, k);
     for (int k = 0; k < x.rows; ++k)
       for (int i = 0; i < 6; ++i) Rt[width * i + k] = G(k, i);
   };
-  write_side(x.pair_a, terms.B_a, terms.G_a);
-  write_side(x.pair_b, terms.B_b, terms.G_b);
+  write_side(x.pair_a, x.first_at_a, terms.B_a, terms.G_a);
+  write_side(x.pair_b, x.first_at_b, terms.B_b, terms.G_b);
   for (int k = 0; k < columns; ++k) S[width * k + k] = softness[k];
   if (x.coupling == Coupling::couple) write_couple(x, terms, softness);
-  if (x.coupling == Coupling::all) write_coupling(x, terms);
 }
 
 /// Writes the joint's whole couple on b as the unknown: M = Σ Δλ̂_i y_i + σ, σ = −s (D_ba Δθ_a −
@@ -197,13 +204,19 @@ void TreeEngine::write_couple(const OffTreeInteraction& x, const PairTerms& term
 /// Δx_a on b.
 void TreeEngine::write_coupling(const OffTreeInteraction& x, const PairTerms& terms) {
   const double s = view_.scale;
-  const TreeLoop& loop = plan_.loops[x.loop];
+  const TreeLoop& loop = plan_.loops[x.coupling_loop];
   const int width = 8 * loop.panels;
   double* S = view_.S + loop.S;
-  double *C_a = view_.pair_rows + 8 * x.pair_a, *C_b = view_.pair_rows + 8 * x.pair_b;
+  double* C_a = view_.pair_rows + 8 * x.coupling_pair_a;
+  double* C_b = view_.pair_rows + 8 * x.coupling_pair_b;
   double *R_a = C_a + 6 * width, *R_b = C_b + 6 * width;
+  if (x.coupling_loop != x.loop) {  // nothing else writes it
+    for (double* rows : {C_a, C_b})
+      for (int i = 0; i < 12 * width; ++i) rows[i] = 0.0;
+    for (int k = 0; k < width; ++k) view_.nu[loop.nu + k] = 0.0;
+  }
   for (int k = 0; k < 6; ++k) {
-    const int on_a = x.rows + k, on_b = x.rows + 6 + k;
+    const int on_a = x.coupling_first + k, on_b = on_a + 6;
     S[width * on_a + on_a] = S[width * on_b + on_b] = -1.0;
     C_a[width * k + on_a] = 1.0;
     C_b[width * k + on_b] = 1.0;
@@ -218,7 +231,7 @@ void TreeEngine::move_multipliers(Trial& trial, double damping) {
   const double unscale = damping / view_.scale;
   const auto turn = [&](int slot) { return Vec3(body_[slot].X + 3); };
   for (const OffTreeInteraction& x : plan_.extras) {
-    if (x.rows == 0 || x.in_lanes) continue;
+    if (x.rows == 0 || x.in_lanes || x.further_part) continue;
     double* lambda = trial.lambda.data() + system_->interactions()[x.interaction].first_row;
     const double* y = view_.y + plan_.loops[x.loop].nu;
     const int plain = x.coupling == Coupling::couple ? x.translation_rows : x.rows;

@@ -46,7 +46,8 @@ class Planner {
     x.rows = ref.rows;
     for (int s : {x.slot_a, x.slot_b})
       if (s >= 0 && plan_.extra_of_slot[s] < 0) plan_.extra_of_slot[s] = plan_.extra_count++;
-    int unknowns = x.rows;
+    int unknowns = ref.further_part ? 0 : x.rows;
+    x.further_part = ref.further_part;
     const Coupling coupling = system_.traits(ref).coupling;
     x.rotations_only = coupling != Coupling::all;
     if (x.slot_a >= 0 && x.slot_b >= 0 && coupling != Coupling::none) {
@@ -62,26 +63,33 @@ class Planner {
           x.translation_rows = x.rows > 3 ? 3 : 0;
           x.couple = plan_.couple_count++;
           unknowns = x.translation_rows + 3;
-        } else {
+        } else if (!ref.shares_row()) {
+          x.coupling_first = x.rows;
           unknowns += 12;
         }
       }
     }
     if (const auto basis = system_.group(ref.group).describe(ref.item).motion_basis)
       x.in_lanes = basis->coincident && x.edge < 0;
-    if (unknowns > 0) {
-      x.loop = static_cast<int>(plan_.loops.size());
-      TreeLoop loop;
-      loop.unknowns = unknowns;
-      loop.panels = (unknowns + 7) / 8;
-      loop.nu = plan_.nu_size;
-      plan_.nu_size += 8 * loop.panels;
-      loop.U = plan_.U_rows;
-      plan_.U_rows += unknowns;
-      plan_.loops.push_back(loop);
-      loop_extra_.push_back(static_cast<int>(plan_.extras.size()));
-    }
+    if (unknowns > 0) x.loop = add_loop(unknowns);
+    if (ref.further_part) x.loop = plan_.extras.back().loop;
+    if (x.coupling == Coupling::all) x.coupling_loop = ref.shares_row() ? add_loop(12) : x.loop;
+    for (const int loop : {x.loop, x.coupling_loop})
+      if (loop >= 0) ends_[loop].insert({x.slot_a, x.slot_b});
     plan_.extras.push_back(x);
+  }
+
+  int add_loop(int unknowns) {
+    TreeLoop loop;
+    loop.unknowns = unknowns;
+    loop.panels = (unknowns + 7) / 8;
+    loop.nu = plan_.nu_size;
+    plan_.nu_size += 8 * loop.panels;
+    loop.U = plan_.U_rows;
+    plan_.U_rows += unknowns;
+    plan_.loops.push_back(loop);
+    ends_.emplace_back();
+    return static_cast<int>(plan_.loops.size()) - 1;
   }
 
   int pair_of(int at_slot, int loop) {
@@ -98,16 +106,30 @@ class Planner {
 
   /// Marks the bodies on the paths between a loop's ends and their lowest common ancestor.
   void trace_loops() {
+    std::set<int> taken;  // pairs that an interaction writes
+    for (OffTreeInteraction& x : plan_.extras) {
+      const auto place = [&](int at_slot, int loop, int& pair, bool& first) {
+        if (at_slot < 0 || loop < 0) return;
+        pair = pair_of(at_slot, loop);
+        first = taken.insert(pair).second;
+      };
+      place(x.slot_a, x.loop, x.pair_a, x.first_at_a);
+      place(x.slot_b, x.loop, x.pair_b, x.first_at_b);
+      if (x.coupling_loop < 0) continue;
+      x.coupling_pair_a = pair_of(x.slot_a, x.coupling_loop);
+      x.coupling_pair_b = pair_of(x.slot_b, x.coupling_loop);
+    }
+    const auto deeper = [&](int p, int q) { return p < 0 || (q >= 0 && depth_[p] < depth_[q]); };
     for (int l = 0; l < static_cast<int>(plan_.loops.size()); ++l) {
-      OffTreeInteraction& x = plan_.extras[loop_extra_[l]];
-      if (x.slot_a >= 0) x.pair_a = pair_of(x.slot_a, l);
-      if (x.slot_b >= 0) x.pair_b = pair_of(x.slot_b, l);
-      int p = x.slot_a, q = x.slot_b;
-      while (p != q) {
-        int& lower = q < 0 || (p >= 0 && depth_[p] >= depth_[q]) ? p : q;
-        opened_[lower].push_back(l);
-        lower = parent_[lower];
+      std::set<int> open = ends_[l];
+      while (open.size() > 1) {
+        const auto lowest = std::max_element(open.begin(), open.end(), deeper);
+        const int at = *lowest;
+        opened_[at].push_back(l);
+        open.erase(lowest);
+        open.insert(parent_[at]);
       }
+      const int p = *open.begin();
       TreeLoop& loop = plan_.loops[l];
       loop.common = p;
       if (p >= 0) {
@@ -156,10 +178,9 @@ class Planner {
 
   void write_lists() {
     std::set<int> written;
-    for (const OffTreeInteraction& x : plan_.extras) {
-      if (x.pair_a >= 0) written.insert(x.pair_a);
-      if (x.pair_b >= 0) written.insert(x.pair_b);
-    }
+    for (const OffTreeInteraction& x : plan_.extras)
+      for (const int pair : {x.pair_a, x.pair_b, x.coupling_pair_a, x.coupling_pair_b})
+        if (pair >= 0) written.insert(pair);
     std::vector<std::vector<LoopAtBody>> open(tree_.slots);
     for (auto b = tree_.order.rbegin(); b != tree_.order.rend(); ++b) {
       const int s = slot(*b);
@@ -235,7 +256,7 @@ class Planner {
   const SpanningTree& tree_;
   TreeLoopPlan plan_;
   std::vector<int> parent_, depth_;
-  std::vector<int> loop_extra_;                       ///< By loop: its extra.
+  std::vector<std::set<int>> ends_;                   ///< By loop: slots of its bodies.
   std::vector<std::vector<int>> opened_, at_common_;  ///< By slot: loops.
   std::map<std::pair<int, int>, int> pairs_, blocks_;
 };

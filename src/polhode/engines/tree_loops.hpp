@@ -19,9 +19,16 @@ struct OffTreeInteraction {
   bool edge_child_is_b = true;
   int loop = -1;                 ///< Index of its loop, if it needs one.
   int pair_a = -1, pair_b = -1;  ///< Positions of its loop's columns and rows.
+  /// Whether it is the first that writes to these: another part of its row may have done so.
+  bool first_at_a = true, first_at_b = true;
+  bool further_part = false;  ///< Part of the row of an earlier interaction, and of its loop.
   /// Coupling of its distant bodies, for which the loop has further unknowns: the couple (3, for
   /// all direction rows), or the effect of each body's motion on the other's rows (12).
   Coupling coupling = Coupling::none;
+  /// Loop of these unknowns, and the positions of its columns and rows: its own, or that of the
+  /// coupling alone if its row has several parts.
+  int coupling_loop = -1, coupling_pair_a = -1, coupling_pair_b = -1;
+  int coupling_first = 0;       ///< Their first unknown in the loop.
   int translation_rows = 0;     ///< Of a joint coupled by a couple: rows before the direction rows.
   int couple = -1;              ///< Its index among joints coupled by a couple.
   bool rotations_only = false;  ///< Its tangents are derivatives of moments by rotations.

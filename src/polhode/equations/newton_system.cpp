@@ -52,6 +52,7 @@ InteractionSweep::InteractionSweep(const System& system, std::vector<int> intera
       batches_.push_back({ref.group, i, 0, false});
     ++batches_.back().count;
     if (ref.rows > 0) batches_.back().has_rows = true;
+    if (ref.shares_row()) batches_.back().has_parts = true;
   }
   const auto most =
       static_cast<std::size_t>(std::min(kBatch, static_cast<int>(interactions_.size())));
@@ -76,6 +77,18 @@ void InteractionSweep::evaluate(const Batch& batch, std::span<const BodyStep> st
                            history + ref.first_history});
   }
   system_->group(batch.group).evaluate(items_, pair_steps_, std::span(terms_).first(items_.size()));
+  if (batch.has_parts) gather_parts(batch);
+}
+
+void InteractionSweep::gather_parts(const Batch& batch) {
+  for (int k = 0; k < batch.count; ++k) {
+    const InteractionRef& ref = system_->interactions()[interactions_[batch.first + k]];
+    if (!ref.shares_row()) continue;
+    if (!ref.further_part) of_parts_ = 0.0;
+    of_parts_ += terms_[k].g[0];
+    terms_[k].g[0] = ref.last_part ? of_parts_ : 0.0;
+    if (!ref.last_part) terms_[k].weight[0] = 0.0;
+  }
 }
 
 NewtonSystem::NewtonSystem(const System& system, MomentumRate form)

@@ -26,6 +26,9 @@ struct KktMap {
 
 /// Batched evaluation of interactions, one virtual call per batch of one group, whose terms are
 /// passed to a visitor. It owns the only buffers needed and allocates once.
+///
+/// Of a row with several parts the last one visited has the value of the whole row and its proximal
+/// weight; the value and the weight of the others are zero. @eq{coupling-row}
 class InteractionSweep {
  public:
   explicit InteractionSweep(const System& system);
@@ -52,7 +55,9 @@ class InteractionSweep {
   struct Batch {
     int group = 0, first = 0, count = 0;  ///< Positions [first, first + count), of one group.
     bool has_rows = false;
+    bool has_parts = false;  ///< Of rows with several parts.
   };
+  void gather_parts(const Batch& batch);
   void evaluate(const Batch& batch, std::span<const BodyStep> steps, const StepContext& context,
                 const double* lambda, const double* history);
 
@@ -62,6 +67,7 @@ class InteractionSweep {
   std::vector<int> items_;
   std::vector<PairStep> pair_steps_;
   std::vector<PairTerms> terms_;
+  double of_parts_ = 0.0;  ///< Sum of the values of a row's parts so far.
 };
 
 /// Adds the rows of an interaction to the constraint check, with tangents or without.

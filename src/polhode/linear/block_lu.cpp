@@ -145,15 +145,15 @@ void BlockLu::put(const KktValues& values) {
       add_6x6(x + place.K_ba, place.stride_a, v.K_ba);
     }
     for (int k = 0; k < place.rows; ++k) {
-      x[place.C + k * (place.stride_rows + 1)] = v.C[k];
+      x[place.C + k * (place.stride_rows + 1)] += v.C[k];
       for (int i = 0; i < 6; ++i) {
         if (place.has_a) {
-          x[place.B_a + i * place.stride_rows + k] = -v.B_a(i, k);
-          x[place.G_a + k * place.stride_a + i] = v.G_a(k, i);
+          x[place.B_a + i * place.stride_rows + k] -= v.B_a(i, k);
+          x[place.G_a + k * place.stride_a + i] += v.G_a(k, i);
         }
         if (place.has_b) {
-          x[place.B_b + i * place.stride_rows + k] = -v.B_b(i, k);
-          x[place.G_b + k * place.stride_b + i] = v.G_b(k, i);
+          x[place.B_b + i * place.stride_rows + k] -= v.B_b(i, k);
+          x[place.G_b + k * place.stride_b + i] += v.G_b(k, i);
         }
       }
     }

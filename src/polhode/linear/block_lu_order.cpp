@@ -77,19 +77,23 @@ NodeGraph gather_nodes(const KktTopology& topology) {
     flood();
   }
 
+  std::vector<int> node_of_row(topology.rows, -1);
   for (int p = 0; p < pairs; ++p) {
     const KktPair& pair = topology.pairs[p];
     if (pair.a != kGround && pair.b != kGround) connect(graph, pair.a, pair.b);
     if (pair.rows == 0 || graph.row_node[p] >= 0) continue;
-    const int node = static_cast<int>(graph.width.size());
+    int& node = node_of_row[pair.first_row];
+    if (node < 0) {
+      node = static_cast<int>(graph.width.size());
+      graph.width.push_back(pair.rows);
+      graph.neighbours.emplace_back();
+      graph.after.emplace_back();
+    }
     graph.row_node[p] = node;
-    graph.width.push_back(pair.rows);
-    graph.neighbours.emplace_back();
-    graph.after.emplace_back();
     for (int body : {pair.a, pair.b}) {
       if (body == kGround) continue;
       connect(graph, node, body);
-      graph.after[node].push_back(body);
+      insert_sorted(graph.after[node], body);
     }
   }
   return graph;

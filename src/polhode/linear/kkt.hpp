@@ -10,7 +10,8 @@
 namespace polhode::linear {
 
 /// One coupling of the linear system: an interaction between a and b (kGround: that side is
-/// absent) with `rows` multiplier rows, the first of which is row `first_row`.
+/// absent) with `rows` multiplier rows, the first of which is row `first_row`. Pairs of one row
+/// each may have the same one: its columns, rows and C are the sums of theirs.
 struct KktPair {
   int a = kGround, b = kGround;
   int rows = 0, first_row = 0;

@@ -35,6 +35,14 @@ struct GearPair {
   std::array<GearCoordinate, 2> coordinate;
 };
 
+/// A coordinate of a row between free coordinates of joints.
+struct CoupledCoordinate {
+  std::variant<FreeAngle, FreeDisplacement> coordinate;
+  Participants bodies;  ///< Of its joint.
+  double factor = 1.0;  ///< f in Σ f q = c.
+  double near = 0.0;    ///< Its value in the model's start, turns counted.
+};
+
 /// Input for building any kind of load: a load with its bodies numbered.
 struct LoadDescription {
   std::string name;
@@ -55,9 +63,10 @@ struct LoadDescription {
   std::map<std::string, Mat6> matrices{};         ///< By key.
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing on its bodies.
   double mass_a = 0.0, mass_b = 0.0;                    ///< Of the bodies; 0 for the ground [kg].
-  Mat3 inertia_b = Mat3::Zero();   ///< Of b about its centre of mass, body axes [kg m²].
-  std::optional<GearPair> gear{};  ///< Of a gear.
-  LoadFunction of_motion{};        ///< From code, in addition to vector or function; world axes.
+  Mat3 inertia_b = Mat3::Zero();             ///< Of b about its centre of mass, body axes [kg m²].
+  std::optional<GearPair> gear{};            ///< Of a gear.
+  std::vector<CoupledCoordinate> coupled{};  ///< Of a coupling, the first with factor 1.
+  LoadFunction of_motion{};  ///< From code, in addition to vector or function; world axes.
 
   /// The free coordinate of the joint that the load acts in.
   [[nodiscard]] std::variant<FreeAngle, FreeDisplacement> coordinate() const {

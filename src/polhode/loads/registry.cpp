@@ -2,6 +2,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/loads/bushing.hpp>
+#include <polhode/loads/coordinate_row.hpp>
 #include <polhode/loads/curve_on_curve.hpp>
 #include <polhode/loads/drag.hpp>
 #include <polhode/loads/gear.hpp>
@@ -360,6 +361,16 @@ const std::vector<LoadKind>& load_kinds() {
        {},
        {},
        {"pitch"}},
+      {"coupling",
+       "first coordinate as a sum of others: q_1 = f_1 q_2 + f_2 q_3 + ... + offset, of any joints",
+       LoadPlace::row,
+       "",
+       {},
+       {},
+       true,
+       add_coupling,
+       {{"effort", "N or N m"}, {"coordinate", "m or rad"}, {"rate", "m/s or rad/s"}},
+       report_of<CoordinateRow>},
       {"point_on_surface",
        "constraint that keeps a point of a body on an ellipsoid or cylinder of another one",
        LoadPlace::surface,

@@ -15,6 +15,7 @@ enum class LoadPlace {
   points,   ///< Two points of two bodies: `bodies`, `at` or `at_body`.
   joint,    ///< The freedom of a joint: `joint`.
   joints,   ///< Free coordinates of two joints: `joints`.
+  row,      ///< Free coordinates of any number of joints: `joints`, `factors`.
   surface,  ///< Two points of two bodies and axes on the first one.
   frames,   ///< Two frames of two bodies: `bodies`, `at` or `at_body`, `axis`.
   curves,   ///< Likewise, with an x axis on the second one.

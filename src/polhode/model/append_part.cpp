@@ -42,6 +42,7 @@ void append_part(Model& whole, Model part, const std::string& prefix) {
     shift(load.b);
     if (!load.joint.empty()) load.joint = prefix + load.joint;
     if (!load.joint_2.empty()) load.joint_2 = prefix + load.joint_2;
+    for (CoordinateSpec& other : load.others) other.joint = prefix + other.joint;
     if (load.solid >= 0) load.solid += solids;
   }
   for (SolidSpec& solid : part.solids) {

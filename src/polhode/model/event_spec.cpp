@@ -6,6 +6,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/loads/registry.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {
@@ -43,6 +44,21 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Refuses to switch a joint whose coordinate a coupling needs.
+void refuse_coupled(const Model& model, const std::string& joint) {
+  for (const LoadSpec& load : model.loads) {
+    if (load.solid >= 0 || load_kind(load.type).place != LoadPlace::row) continue;
+    const bool needs = load.joint == joint ||
+                       std::any_of(load.others.begin(), load.others.end(),
+                                   [&](const CoordinateSpec& o) { return o.joint == joint; });
+    if (needs)
+      throw InputError(joint,
+                       format("'{}' is in the coupling '{}', so it cannot be switched or break",
+                              joint, load.name),
+                       "Leave the coupling out, or let another joint break");
+  }
+}
+
 /// Adds the loads in joints to the events that switch these.
 void add_companions(const Model& model, std::vector<EventSpec>& events) {
   const std::vector<EventSpec> given = events;
@@ -51,6 +67,7 @@ void add_companions(const Model& model, std::vector<EventSpec>& events) {
   };
   for (const LoadSpec& load : model.loads) {
     if (load.joint.empty() || load.words.contains("stays")) continue;
+    if (load.solid < 0 && load_kind(load.type).place == LoadPlace::row) continue;
     const bool named =
         any([&](const EventSpec& e) { return is_in(e.on, load.name) || is_in(e.off, load.name); });
     for (std::size_t k = 0; k < given.size(); ++k) {
@@ -90,6 +107,11 @@ SwitchTarget switch_target(const Model& model, const std::string& name) {
   if (count == 0) throw unknown_target(model, name, std::move(names));
   if (count > 1)
     throw InputError(name, format("'{}' is a joint and a load", name), "Rename one of them");
+  if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid < 0 &&
+      load_kind(model.loads[static_cast<std::size_t>(found.index)].type).place == LoadPlace::row)
+    throw InputError(name, format("'{}' is a coupling, which cannot be switched", name),
+                     "Use a gear, which can, where two coordinates suffice");
+  if (found.joint) refuse_coupled(model, name);
   if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid >= 0)
     throw InputError(name, format("'{}' is a load on a solid, which cannot be switched", name),
                      "Let its function of time be zero instead");

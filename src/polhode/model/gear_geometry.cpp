@@ -41,7 +41,7 @@ class GearPlanner {
       if (moving.size() > 3 || !carrier || *carrier == kGround)
         throw InputError(where_ + ".joints",
                          "act between more than two moving bodies without a common carrier",
-                         "Name joints of one carrier, or joints on the ground");
+                         "Name joints of one carrier, or joints on the ground, or use a coupling");
       check_mesh(*carrier);
       on_carrier(out, *carrier);
     } else if (carrier && meshes(*carrier)) {
@@ -59,28 +59,13 @@ class GearPlanner {
   }
 
   void find_coordinate(std::size_t i) {
-    if (joints_[i].joint->frame_moves())
-      throw InputError(where_ + ".joints",
-                       format("the frame of '{}' has a prescribed motion", joints_[i].joint->name),
-                       "Give the motion to a separate body, and act in a joint to that body");
-    const auto angle = joints_[i].joint->free_angle(joints_[i].coordinate);
-    const auto displacement = joints_[i].joint->free_displacement(joints_[i].coordinate);
-    if (angle.has_value() == displacement.has_value()) {
-      const std::vector<std::string> names = joints_[i].joint->coordinate_names();
-      const std::string what =
-          format("'{}' ({}) has ", joints_[i].joint->name, joints_[i].joint->type());
-      throw InputError(where_ + ".coordinates",
-                       joints_[i].coordinate.empty()
-                           ? what + "not one free coordinate"
-                           : what + format("no free coordinate '{}'", joints_[i].coordinate),
-                       names.empty() ? "Name another joint" : "Free are: " + name_list(names));
-    }
-    if (angle) {
+    const auto found = free_coordinate(where_, joints_[i]);
+    if (const auto* angle = std::get_if<FreeAngle>(&found)) {
       coordinate_[i].kind = Kind::angle;
       coordinate_[i].angle = *angle;
     } else {
       coordinate_[i].kind = Kind::displacement;
-      coordinate_[i].displacement = *displacement;
+      coordinate_[i].displacement = std::get<FreeDisplacement>(found);
     }
   }
 
@@ -227,6 +212,28 @@ class GearPlanner {
 };
 
 }  // namespace
+
+std::variant<FreeAngle, FreeDisplacement> free_coordinate(const std::string& where,
+                                                          const GearJoint& of) {
+  const Joint& joint = *of.joint;
+  if (joint.frame_moves())
+    throw InputError(where + ".joints",
+                     format("the frame of '{}' has a prescribed motion", joint.name),
+                     "Give the motion to a separate body, and act in a joint to that body");
+  const auto angle = joint.free_angle(of.coordinate);
+  const auto displacement = joint.free_displacement(of.coordinate);
+  if (angle.has_value() == displacement.has_value()) {
+    const std::vector<std::string> names = joint.coordinate_names();
+    const std::string what = format("'{}' ({}) has ", joint.name, joint.type());
+    throw InputError(where + ".coordinates",
+                     of.coordinate.empty()
+                         ? what + "not one free coordinate"
+                         : what + format("no free coordinate '{}'", of.coordinate),
+                     names.empty() ? "Name another joint" : "Free are: " + name_list(names));
+  }
+  if (angle) return *angle;
+  return *displacement;
+}
 
 GearGeometry gear_geometry(const std::string& where, const std::array<GearJoint, 2>& joints) {
   return GearPlanner(where, joints).plan();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <variant>
 
 #include <polhode/joints/joint.hpp>
 #include <polhode/loads/load_description.hpp>
@@ -14,6 +15,12 @@ struct GearJoint {
   const Joint* joint = nullptr;
   std::string coordinate;  ///< As in the user's file; "" for the only one.
 };
+
+/// The free coordinate of a joint.
+/// @param where  Path for messages, such as loads.train.
+/// @throws InputError if there is none, or not only one, or the joint's frame is moved.
+[[nodiscard]] std::variant<FreeAngle, FreeDisplacement> free_coordinate(const std::string& where,
+                                                                        const GearJoint& joint);
 
 /// Bodies and coordinates of a gear between two joints. @eq{gear-angle}
 struct GearGeometry {

@@ -101,6 +101,12 @@ struct JointSpec {
   bool assembled_start = false;  ///< Given with at_body or moving: the start must be assembled.
 };
 
+/// A coordinate of a coupling in addition to its first one.
+struct CoordinateSpec {
+  std::string joint, coordinate;  ///< Of the joint; "": its only one.
+  double factor = 1.0;            ///< First coordinate per this one, SI.
+};
+
 /// Description of a load; the relevant fields depend on the type (see loads/registry).
 struct LoadSpec {
   std::string name, type;  ///< force, moment, spring_damper, torsional_spring, gravity ...
@@ -126,6 +132,7 @@ struct LoadSpec {
   std::map<std::string, std::string> words;             ///< Choices by key.
   std::map<std::string, Mat6> matrices;                 ///< By key, SI.
   std::string joint_2, coordinate_2;                    ///< Of a gear: its second coordinate.
+  std::vector<CoordinateSpec> others{};                 ///< Of a coupling.
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing, as Z_a and Z_b.
   /// Function given in code, in addition to vector or value: of the point of a force or moment, of
   /// the coordinate of a motor or the distance of an axial force.

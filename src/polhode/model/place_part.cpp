@@ -213,6 +213,14 @@ class Placer {
       const Signs signs = axis_signs(free);
       return coordinate.empty() ? sign_of_only(free, turns, signs) : sign_of(coordinate, signs);
     };
+    if (load_kind(load.type).place == LoadPlace::row) {
+      const double first = sign(load.joint, load.coordinate);
+      for (CoordinateSpec& other : load.others)
+        other.factor *= first * sign(other.joint, other.coordinate);
+      if (const auto offset = load.parameters.find("offset"); offset != load.parameters.end())
+        offset->second *= first;
+      return;
+    }
     if (!load.joint_2.empty()) {
       if (!keeps_all(load.joint) || !keeps_all(load.joint_2))
         refuse_mirror(where, "a gear on a joint that moves both along and about an axis",

@@ -29,8 +29,11 @@ class RowComponents {
  public:
   explicit RowComponents(const System& system)
       : system_(system), sets_(static_cast<std::size_t>(system.body_count())) {
-    for (const InteractionRef& ref : system.interactions())
+    for (const InteractionRef& ref : system.interactions()) {
       if (ref.rows > 0 && ref.a != kGround && ref.b != kGround) sets_.join(ref.a, ref.b);
+      if (ref.further_part)
+        sets_.join(moving_body(ref), moving_body(system.interactions()[ref.first_part]));
+    }
   }
   /// Component of an interaction with rows, by its first body.
   [[nodiscard]] int of(const InteractionRef& ref) {
@@ -97,6 +100,10 @@ struct LeastReactions::Impl {
       const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
       pair[static_cast<std::size_t>(i)] = static_cast<int>(topology.pairs.size());
       const int a = own(ref.a), b = own(ref.b);
+      if (ref.further_part) {  // the row of the part before
+        topology.pairs.push_back({a, b, ref.rows, static_cast<int>(row.size()) - 1});
+        continue;
+      }
       topology.pairs.push_back({a, b, ref.rows, static_cast<int>(row.size())});
       for (int k = 0; k < ref.rows; ++k) row.push_back(ref.first_row + k);
     }
@@ -206,7 +213,7 @@ bool LeastReactions::apply(const State& state, Trial& trial, NewtonEngine& engin
       const double softness = s.at_n1->softness(p, k);
       trial.lambda[at] = trial.lambda_centre[at] = s.lambda[r];
       // εW s (λ − λ_c) cancels the part of the row that no motion can change.
-      if (softness != 1.0 && s.has_centre[static_cast<std::size_t>(p)] != 0)
+      if (softness > 0.0 && softness != 1.0 && s.has_centre[static_cast<std::size_t>(p)] != 0)
         trial.lambda_centre[at] += per_scale / softness * s.part[r];
     }
   }

@@ -17,10 +17,27 @@ namespace {
 
 /// Exact rows of an interaction, each normalised.
 struct Rows {
-  int interaction = 0, a = kGround, b = kGround;
-  Eigen::Matrix<double, Eigen::Dynamic, 12> G;
+  int interaction = 0;
+  std::vector<int> bodies{};  ///< Moving bodies, six columns of G each.
+  Mat G{};
   std::vector<int> number{};       ///< Of each row in the system.
   std::vector<double> per_size{};  ///< Factor by which each was normalised.
+
+  [[nodiscard]] auto part(std::size_t body) const {
+    return G.middleCols<6>(6 * static_cast<Eigen::Index>(body));
+  }
+  /// Adds a body's columns, or adds to them.
+  void add(int body, const Mat& by) {
+    if (body == kGround) return;
+    const auto found = std::find(bodies.begin(), bodies.end(), body);
+    if (found != bodies.end()) {
+      G.middleCols<6>(6 * (found - bodies.begin())) += by;
+      return;
+    }
+    bodies.push_back(body);
+    G.conservativeResize(by.rows(), 6 * static_cast<Eigen::Index>(bodies.size()));
+    G.rightCols<6>() = by;
+  }
 };
 
 std::vector<Rows> constraint_rows(const System& system, const State& state) {
@@ -41,24 +58,31 @@ std::vector<Rows> constraint_rows(const System& system, const State& state) {
       steps, context, no_lambda.data(), state.history.data(),
       [&](int i, const PairStep&, const PairTerms& terms) {
         const InteractionRef& ref = system.interactions()[i];
-        Rows rows{.interaction = i, .a = ref.a, .b = ref.b, .G = {}};
-        for (int k = 0; k < ref.rows; ++k) {
-          if (terms.compliance[k] != 0.0) continue;
-          Eigen::Matrix<double, 1, 12> row = Eigen::Matrix<double, 1, 12>::Zero();
-          if (ref.a != kGround) row.head<6>() = terms.G_a.row(k);
-          if (ref.b != kGround) row.tail<6>() = terms.G_b.row(k);
-          row.segment<3>(3) *= per_length;
-          row.tail<3>() *= per_length;
-          const double size = row.norm();
-          if (size > 0.0) row /= size;
-          rows.number.push_back(ref.first_row + k);
-          rows.per_size.push_back(size > 0.0 ? 1.0 / size : 0.0);
-          rows.G.conservativeResize(rows.G.rows() + 1, 12);
-          rows.G.bottomRows<1>() = row;
-        }
-        if (rows.G.rows() > 0) list.push_back(std::move(rows));
+        std::vector<int> exact;
+        for (int k = 0; k < ref.rows; ++k)
+          if (terms.compliance[k] == 0.0) exact.push_back(k);
+        if (exact.empty()) return;
+        if (!ref.further_part) list.push_back({.interaction = i});
+        Rows& rows = list.back();
+        const auto of = [&](const auto& G) {
+          Mat by(exact.size(), 6);
+          for (std::size_t k = 0; k < exact.size(); ++k)
+            by.row(static_cast<Eigen::Index>(k)) = G.row(exact[k]);
+          by.rightCols<3>() *= per_length;
+          return by;
+        };
+        rows.add(ref.a, of(terms.G_a));
+        rows.add(ref.b, of(terms.G_b));
+        if (!ref.further_part)
+          for (const int k : exact) rows.number.push_back(ref.first_row + k);
       },
       true);
+  for (Rows& rows : list)
+    for (Eigen::Index k = 0; k < rows.G.rows(); ++k) {
+      const double size = rows.G.row(k).norm();
+      if (size > 0.0) rows.G.row(k) /= size;
+      rows.per_size.push_back(size > 0.0 ? 1.0 / size : 0.0);
+    }
   return list;
 }
 
@@ -68,8 +92,7 @@ std::vector<Rows> constraint_rows(const System& system, const State& state) {
 int take_out_branches(const System& system, double tolerance, std::vector<Rows>& rows) {
   std::vector<std::vector<int>> of_body(static_cast<std::size_t>(system.body_count()));
   for (int k = 0; k < static_cast<int>(rows.size()); ++k)
-    for (const int body : {rows[k].a, rows[k].b})
-      if (body != kGround) of_body[body].push_back(k);
+    for (const int body : rows[k].bodies) of_body[body].push_back(k);
   std::vector<char> gone(rows.size(), 0);
   std::vector<int> ends;
   for (int b = 0; b < system.body_count(); ++b)
@@ -83,16 +106,18 @@ int take_out_branches(const System& system, double tolerance, std::vector<Rows>&
     const Rows& joint = rows[k];
     Eigen::ColPivHouseholderQR<Mat> qr(6, joint.G.rows());
     qr.setThreshold(tolerance);
-    qr.compute((joint.a == body ? joint.G.leftCols<6>() : joint.G.rightCols<6>()).transpose());
+    const auto place = std::find(joint.bodies.begin(), joint.bodies.end(), body);
+    qr.compute(joint.part(static_cast<std::size_t>(place - joint.bodies.begin())).transpose());
     if (qr.rank() < joint.G.rows()) continue;
     rank += static_cast<int>(joint.G.rows());
     gone[k] = 1;
     of_body[body].clear();
-    const int other = joint.a == body ? joint.b : joint.a;
-    if (other == kGround) continue;
-    std::vector<int>& left = of_body[other];
-    left.erase(std::find(left.begin(), left.end(), k));
-    if (left.size() == 1) ends.push_back(other);
+    for (const int other : joint.bodies) {
+      if (other == body) continue;
+      std::vector<int>& left = of_body[other];
+      left.erase(std::find(left.begin(), left.end(), k));
+      if (left.size() == 1) ends.push_back(other);
+    }
   }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < rows.size(); ++k)
@@ -105,10 +130,10 @@ int take_out_branches(const System& system, double tolerance, std::vector<Rows>&
 std::vector<std::vector<int>> clusters(const System& system, const std::vector<Rows>& rows) {
   DisjointSets sets(static_cast<std::size_t>(system.body_count()));
   for (const Rows& r : rows)
-    if (r.a != kGround && r.b != kGround) sets.join(r.a, r.b);
+    for (const int body : r.bodies) sets.join(r.bodies.front(), body);
   std::map<int, std::vector<int>> by_first;
   for (int k = 0; k < static_cast<int>(rows.size()); ++k)
-    by_first[sets.first_of(rows[k].a != kGround ? rows[k].a : rows[k].b)].push_back(k);
+    by_first[sets.first_of(rows[k].bodies.front())].push_back(k);
   std::vector<std::vector<int>> list;
   for (auto& [body, members] : by_first) list.push_back(std::move(members));
   return list;
@@ -127,13 +152,9 @@ ClusterRows rows_of(const std::vector<Rows>& rows, const std::vector<int>& clust
   for (const int k : cluster) {
     const Rows& r = rows[static_cast<std::size_t>(k)];
     linear::BodyRows block{{}, Mat(r.G.rows(), 0)};
-    for (const auto& [body, part] :
-         {std::pair<int, Mat>(r.a, r.G.leftCols<6>()), {r.b, r.G.rightCols<6>()}}) {
-      if (body == kGround) continue;
+    for (const int body : r.bodies)
       block.bodies.push_back(place.try_emplace(body, static_cast<int>(place.size())).first->second);
-      block.G.conservativeResize(Eigen::NoChange, block.G.cols() + 6);
-      block.G.rightCols(6) = part;
-    }
+    block.G = r.G;
     list.interaction.insert(list.interaction.end(), static_cast<std::size_t>(r.G.rows()),
                             r.interaction);
     list.blocks.push_back(std::move(block));

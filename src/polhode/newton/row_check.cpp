@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <polhode/core/format.hpp>
 #include <polhode/newton/row_check.hpp>
@@ -61,6 +62,7 @@ bool RowCheck::hold(const State& state, const Trial& trial, bool rounded) {
   std::fill(gaps_.begin(), gaps_.end(), 0.0);
   PairTerms terms;
   terms.set_zero();
+  double of_parts = 0.0, noise_of_parts = 0.0;  // of a row of which not all parts were visited
   const double turned = kTurnOfStep * static_cast<double>(state.ledger.steps + 1);
   for (int i = 0; i < static_cast<int>(system_->interactions().size()); ++i) {
     const InteractionRef& ref = system_->interactions()[i];
@@ -84,10 +86,15 @@ bool RowCheck::hold(const State& state, const Trial& trial, bool rounded) {
       add(ref.a, terms.G_a);
       add(ref.b, terms.G_b);
       const double spring = std::abs(terms.compliance[k] * step.lambda[k]);
-      const double noise = kRowRoundOff * (by_r * reach + by_theta * angle + spring);
+      const double noise =
+          noise_of_parts + kRowRoundOff * (by_r * reach + by_theta * angle + spring);
+      of_parts += terms.g[k];
+      noise_of_parts = ref.last_part ? 0.0 : noise;
+      if (!ref.last_part) continue;
+      const double value = std::exchange(of_parts, 0.0);
       const double tolerance =
           rounded ? kAtRoundOff * noise : kTolerance * (by_r * length + by_theta) + noise;
-      gaps_[ref.first_row + k] = terms.g[k] + terms.compliance[k] * step.lambda[k];
+      gaps_[ref.first_row + k] = value + terms.compliance[k] * step.lambda[k];
       const double gap = std::abs(gaps_[ref.first_row + k]);
       if (!(gap <= open_.over * tolerance)) open_ = {i, gap, gap / tolerance, by_r > 0.0};
     }

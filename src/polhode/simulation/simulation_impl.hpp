@@ -313,6 +313,8 @@ struct Simulation::Impl {
     for (std::size_t i = 0; i < model.joints.size(); ++i) refuse_outside_limits(i);
     bool to_assemble = false;
     for (const JointSpec& j : model.joints) to_assemble = to_assemble || j.assembled_start;
+    for (const LoadSpec& load : model.loads)
+      to_assemble = to_assemble || load.parameters.contains("offset");
     const double given = model.analysis.assembly_tolerance;
     const double allowed = given > 0.0 ? given : to_assemble ? kMoveToAssemble : kMoveAsGiven;
     if (r.largest_move > allowed)

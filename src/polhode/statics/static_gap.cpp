@@ -60,13 +60,10 @@ double StaticNewton::assemble_gap(Vec& rhs, Vec& sizes) {
   const double length = system_->length_scale();
   const int bodies = 6 * system_->body_count();
   rhs = Vec::Zero(bodies + system_->rows());
-  double square = 0.0;
   linear::KktValues& values = newton_.values();
   for (std::size_t p = 0; p < newton_.topology().pairs.size(); ++p) {
     const linear::KktPair& pair = newton_.topology().pairs[p];
-    linear::KktValues::Pair& v = values.pairs[p];
-    v.K_ab.setZero(), v.K_ba.setZero();
-    v.B_a.setZero(), v.B_b.setZero();
+    const linear::KktValues::Pair& v = values.pairs[p];
     for (int k = 0; k < pair.rows; ++k) {
       const int row = pair.first_row + k;
       double size = 0.0;
@@ -78,18 +75,27 @@ double StaticNewton::assemble_gap(Vec& rhs, Vec& sizes) {
       };
       add(pair.a, v.G_a);
       add(pair.b, v.G_b);
-      // A spring carries what it must.
-      if (first) sizes[row] = newton_.is_spring(row) ? 0.0 : std::sqrt(size);
+      // A spring carries what it must. A row with several parts has the sum of their squares.
+      if (first)
+        sizes[row] = newton_.is_spring(row) ? 0.0 : std::hypot(sizes[row], std::sqrt(size));
+    }
+  }
+  for (std::size_t p = 0; p < newton_.topology().pairs.size(); ++p) {
+    const linear::KktPair& pair = newton_.topology().pairs[p];
+    linear::KktValues::Pair& v = values.pairs[p];
+    v.K_ab.setZero(), v.K_ba.setZero();
+    v.B_a.setZero(), v.B_b.setZero();
+    for (int k = 0; k < pair.rows; ++k) {
+      const int row = pair.first_row + k;
       const double weight = sizes[row] > 0.0 ? 1.0 / sizes[row] : 0.0;
       v.G_a.row(k) *= weight, v.G_b.row(k) *= weight;
       v.C[k] = 1.0;
       rhs[bodies + row] = -weight * newton_.row_residual(row);
-      square += rhs[bodies + row] * rhs[bodies + row];
     }
     if (pair.a != kGround) v.B_a.leftCols(pair.rows) = v.G_a.topRows(pair.rows).transpose();
     if (pair.b != kGround) v.B_b.leftCols(pair.rows) = v.G_b.topRows(pair.rows).transpose();
   }
-  return std::sqrt(square);
+  return rhs.tail(system_->rows()).norm();
 }
 
 /// @eq{statics-gap}

@@ -54,7 +54,7 @@ std::vector<double> acceleration_terms(const System& system, State state) {
     const PairView view = system.instant(state, ref, state.lambda.data());
     Vec6 of = Vec6::Zero();
     system.group(ref.group).acceleration_terms(ref.item, view.step(), of);
-    for (int k = 0; k < ref.rows; ++k) gamma[ref.first_row + k] = of[k];
+    for (int k = 0; k < ref.rows; ++k) gamma[ref.first_row + k] += of[k];
   }
   return gamma;
 }

@@ -33,7 +33,11 @@ ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
     if (a != kGround && b != kGround) ties_.join(a, b);
   };
   for (const InteractionRef& ref : system.interactions())
-    if (ref.rows > 0 || system.traits(ref).coupled_mass != 0.0) tie(ref.a, ref.b);
+    if (ref.rows > 0 || system.traits(ref).coupled_mass != 0.0) {
+      tie(ref.a, ref.b);
+      if (ref.further_part)
+        tie(moving_body(ref), moving_body(system.interactions()[ref.first_part]));
+    }
   const Nodes& nodes = system.nodes();
   for (int i = 0; i < nodes.count(); ++i)
     if (nodes[i].body >= 0) tied_[nodes[i].body] = true;

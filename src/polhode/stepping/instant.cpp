@@ -16,6 +16,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   VelocityReport report;
   s.take(state);
   double largest_scale = 0.0;
+  double of_parts = 0.0;  // rate of a row of which not all parts were visited
   const auto velocity = [&](int body) {
     Vec6 v = Vec6::Zero();
     if (body != kGround) v << s.steps[body].v_n1, s.steps[body].Lambda_n1 * s.steps[body].W_n1;
@@ -30,15 +31,17 @@ VelocityReport InstantSolver::project_velocities(State& state) {
         const Vec6 rate = driven ? s.rates(state, ref, TimeSide::kAfter) : Vec6::Zero();
         for (int k = 0; k < ref.rows; ++k) {
           if (terms.compliance[k] != 0.0) continue;
-          double sum = -rate[k], scale = std::abs(rate[k]);
+          double sum = -rate[k] + of_parts, scale = std::abs(rate[k]);
           for (int c = 0; c < 6; ++c) {
             const double a = ref.a == kGround ? 0.0 : terms.G_a(k, c) * v_a[c];
             const double b = ref.b == kGround ? 0.0 : terms.G_b(k, c) * v_b[c];
             sum += a + b;
             scale += std::abs(a) + std::abs(b);
           }
-          if (!(std::abs(sum) <= report.residual_before)) report.residual_before = std::abs(sum);
           largest_scale = std::max(largest_scale, scale);
+          of_parts = ref.last_part ? 0.0 : sum;
+          if (!ref.last_part) continue;
+          if (!(std::abs(sum) <= report.residual_before)) report.residual_before = std::abs(sum);
         }
       },
       true);
@@ -108,7 +111,7 @@ InstantSolution InstantSolver::accelerations(const State& state, std::span<const
     for (int k = 0; k < ref.rows; ++k) {
       const int row = ref.first_row + k;
       if (terms.compliance[k] == 0.0) {
-        s.rhs[6 * bodies + row] = -gamma[k];
+        s.rhs[6 * bodies + row] -= gamma[k];
       } else {
         const double lambda = solution.lambda[row] = -terms.g[k] / terms.compliance[k];
         wrench_a += lambda * terms.B_a.col(k);

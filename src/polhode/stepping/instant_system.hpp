@@ -178,6 +178,7 @@ struct InstantSolver::Impl {
   /// G x by row into `out`, and the largest sum of magnitudes of its terms.
   double rows_times(const Vec& field, Eigen::Ref<Vec> out) const {
     double scale = 0.0;
+    out.setZero();
     for (std::size_t p = 0; p < map.topology.pairs.size(); ++p) {
       const linear::KktPair& pair = map.topology.pairs[p];
       const linear::KktValues::Pair& v = values.pairs[p];
@@ -189,7 +190,7 @@ struct InstantSolver::Impl {
           sum += a + b;
           size += std::abs(a) + std::abs(b);
         }
-        out[pair.first_row + k] = sum;
+        out[pair.first_row + k] += sum;
         scale = std::max(scale, size);
       }
     }

@@ -61,7 +61,7 @@ EnergyLedger::EnergyLedger(const System& system, const LaneKernels& kernels,
     if (mass != 0.0) coupled_.push_back({slot(ref.a), slot(ref.b), mass});
   }
   for (const InteractionRef& ref : system.interactions()) {
-    if (ref.rows == 0) continue;
+    if (ref.rows == 0 || ref.further_part) continue;
     const auto basis = system.group(ref.group).describe(ref.item).motion_basis;
     const int forces = basis ? basis->translation_rows() : ref.rows;
     row_sizes_.push_back(

@@ -36,8 +36,11 @@ std::vector<Part> parts_of(const System& system) {
   const Nodes& nodes = system.nodes();
   const int bodies = system.body_count();
   DisjointSets sets(static_cast<std::size_t>(bodies + nodes.count()));
-  for (const InteractionRef& ref : system.interactions())
+  for (const InteractionRef& ref : system.interactions()) {
     if (ref.a != kGround && ref.b != kGround) sets.join(ref.a, ref.b);
+    if (ref.further_part)
+      sets.join(moving_body(ref), moving_body(system.interactions()[ref.first_part]));
+  }
   for (int i = 0; i < nodes.count(); ++i)
     if (nodes[i].body >= 0) sets.join(nodes[i].body, bodies + i);
   std::vector<std::string> solids(static_cast<std::size_t>(nodes.count()));

@@ -64,6 +64,7 @@ class Group final : public InteractionGroup {
     t.compliant = item.compliant();
     t.set_valued = item.set_valued();
     t.holds_ground = item.holds_ground();
+    t.row_goes_on = item.row_goes_on();
     t.impulse_sum = item.impulse_sum();
     t.work_entry = static_cast<short>(item.work_entry());
     t.impulse_entry = static_cast<short>(item.impulse_entry());

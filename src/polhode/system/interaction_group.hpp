@@ -27,6 +27,7 @@ struct InteractionTraits {
   bool works = false;  ///< work() must be called.
   bool prescribes = false, has_barrier = false, always_queried = false, reversible = false;
   bool compliant = false, set_valued = false, holds_ground = false;
+  bool row_goes_on = false;  ///< The next item is a further part of its only row.
   ImpulseSum impulse_sum = ImpulseSum::none;
   short work_entry = -1, impulse_entry = -1;  ///< In the history; −1: none.
   double coupled_mass = 0.0;                  ///< [kg]

@@ -26,6 +26,9 @@ struct InteractionItem {
 
   [[nodiscard]] int rows() const { return 0; }
   [[nodiscard]] int history_size() const { return 0; }
+  /// Whether the next item of its group is a further part of its only row: a row of more than two
+  /// bodies. Each part has the force of the row's multiplier on its own bodies, and its term of g.
+  [[nodiscard]] bool row_goes_on() const { return false; }
   /// Whether the history only counts turns: it may then be committed after several steps, before
   /// the bodies have a relative rotation of half a turn.
   [[nodiscard]] bool lazy_history() const { return false; }

@@ -61,8 +61,16 @@ void System::finish() {
                           !traits.dissipates && !traits.compliant && !traits.has_barrier;
       if (basis) candidates.push_back({a, b, index, traits.reversible});
       shapes.push_back(shape_code(basis));
-      refs_.push_back({g, i, a, b, traits.rows, rows_, histories});
-      rows_ += traits.rows;
+      InteractionRef ref{g, i, a, b, traits.rows, rows_, histories, index};
+      ref.last_part = !traits.row_goes_on;
+      if (i > 0 && groups_[g]->traits(i - 1).row_goes_on) {
+        ref.further_part = true;
+        ref.first_row = refs_.back().first_row;
+        ref.first_part = refs_.back().first_part;
+      } else {
+        rows_ += traits.rows;
+      }
+      refs_.push_back(ref);
       histories += traits.history_size;
       conservative_ = conservative_ && traits.conservative;
       dissipates_ = dissipates_ || traits.dissipates;

@@ -30,7 +30,19 @@ struct InteractionRef {
   int rows = 0;
   int first_row = 0;      ///< Into State::lambda.
   int first_history = 0;  ///< Into State::history.
+  /// First of the interactions that are parts of its row, by default this one.
+  int first_part = 0;
+  bool last_part = true;
+
+  /// Whether its row has parts of other bodies.
+  [[nodiscard]] bool shares_row() const { return !last_part || further_part; }
+  bool further_part = false;  ///< Not the first one.
 };
+
+/// A body of an interaction that is not the ground; kGround if there is none.
+[[nodiscard]] inline int moving_body(const InteractionRef& ref) {
+  return ref.a != kGround ? ref.a : ref.b;
+}
 
 /// View of a step for one interaction, together with the bodies' steps that it refers to.
 struct PairView {

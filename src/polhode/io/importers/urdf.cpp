@@ -333,40 +333,58 @@ class ModelWriter {
            at(tree_.body, at(tree_.parent, j)) != at(tree_.body, at(tree_.child, j));
   }
 
-  /// Whether a gear can say it: two joints of the same kind on the ground, or two parallel axes,
-  /// apart from each other, of one body.
-  [[nodiscard]] bool is_gear(int j, int leader) const {
-    const UrdfJoint &one = at(robot_.joints, j), &two = at(robot_.joints, leader);
-    const int a = at(tree_.parent, j), b = at(tree_.parent, leader);
-    if (one.turns() != two.turns()) return false;
-    if (at(tree_.grounded, a) && at(tree_.grounded, b)) return true;
-    if (!one.turns() || at(tree_.body, a) != at(tree_.body, b)) return false;
-    const Pose p = in_body(a) * one.origin, q = in_body(b) * two.origin;
-    const Vec3 n = p.R * one.axis, m = q.R * two.axis, u = q.p - p.p;
-    // The limits of the gear itself are a hundred times narrower.
-    return n.cross(m).norm() < 1e-8 && (u - u.dot(n) * n).norm() > 1e-4 * (1.0 + u.norm());
+  /// A joint's coordinate as factor times that of another one plus an offset.
+  struct Follows {
+    int leader;
+    double factor, offset;
+  };
+
+  /// Coordinate of a joint with a mimic, by that of the joint at the beginning of the chain.
+  [[nodiscard]] Follows follows(int j) const {
+    Follows f{j, 1.0, 0.0};
+    while (const auto& mimic = at(robot_.joints, f.leader).mimic) {
+      f.offset += f.factor * mimic->offset;
+      f.factor *= mimic->multiplier;
+      f.leader = tree_.joint_index.at(mimic->joint);
+    }
+    return f;
   }
 
+  /// Joints that follow one that moves nothing, and is held, follow the first one of them.
   void write_mimic(int j, SourceNode& loads) {
     const UrdfJoint& joint = at(robot_.joints, j);
-    const UrdfMimic& mimic = *joint.mimic;
-    const int leader = tree_.joint_index.at(mimic.joint);
     if (!moves(j)) return;
-    if (mimic.multiplier == 0.0 || !moves(leader) || !is_gear(j, leader)) {
-      refuse(*mimic.at,
-             format("the joint {} follows {} by <mimic>, which a gear cannot say",
-                    quote(joint.name), quote(mimic.joint)),
-             "Gears connect joints on the ground, or parallel axes of one link.");
-      return;
+    Follows f = follows(j);
+    if (f.factor != 0.0 && !moves(f.leader)) {
+      const auto [first, is_first] = first_follower_.try_emplace(f.leader, j);
+      if (is_first) {
+        out_.notes.push_back(
+            {Kind::approximated, xml_.place(*joint.mimic->at),
+             format("the joint {} moves freely, as {}, which it follows, moves no mass",
+                    quote(joint.name), quote(at(robot_.joints, f.leader).name))});
+        return;
+      }
+      const Follows other = follows(first->second);
+      f = {first->second, f.factor / other.factor,
+           f.offset - f.factor / other.factor * other.offset};
     }
-    const NodeBuilder make{mimic.at->GetLineNum()};
-    SourceNode gear = make.map();
-    make.put(gear, "type", make.text("gear"));
-    make.put(
-        gear, "joints",
-        make.list({make.text(joint_name_.at(joint.name)), make.text(joint_name_.at(mimic.joint))}));
-    make.put(gear, "ratio", make.number(mimic.multiplier));
-    make.put(loads, joint_name_.at(joint.name) + "_mimic", std::move(gear));
+    const NodeBuilder make{joint.mimic->at->GetLineNum()};
+    SourceNode row = make.map();
+    make.put(row, "type", make.text("coupling"));
+    std::vector<SourceNode> joints{make.text(joint_name_.at(joint.name))};
+    if (f.factor != 0.0) {
+      joints.push_back(make.text(joint_name_.at(at(robot_.joints, f.leader).name)));
+      if (at(robot_.joints, f.leader).turns()) {
+        // Turns of its start, which the model does not count.
+        const double start = at(tree_.start, f.leader)[0];
+        constexpr double kTurn = 2.0 * std::numbers::pi;
+        f.offset += f.factor * kTurn * std::round(start / kTurn);
+      }
+    }
+    make.put(row, "joints", make.list(std::move(joints)));
+    if (f.factor != 0.0) make.put(row, "factors", make.list({make.number(f.factor)}));
+    make.put(row, "offset", make.number(f.offset));
+    make.put(loads, joint_name_.at(joint.name) + "_mimic", std::move(row));
   }
 
   const UrdfRobot& robot_;
@@ -377,6 +395,7 @@ class ModelWriter {
   Imported& out_;
   std::vector<std::string> link_name_;
   std::map<std::string, std::string> joint_name_;
+  std::map<int, int> first_follower_;  ///< By leader that moves nothing.
 };
 
 }  // namespace

@@ -54,6 +54,7 @@ class LoadReader {
     } else {
       read_on_bodies(load_kind(load_.type));
     }
+    if (table_.find("factors")) return;  // dimensions are those of the coordinates
     for (const Field& field : table_.fields)
       if (field.kind == FieldKind::kNumber)
         if (const auto value = section_.number(field.name)) load_.parameters[field.name] = *value;
@@ -96,6 +97,9 @@ class LoadReader {
       case LoadPlace::joints:
         read_joint_pair();
         read_stays();
+        break;
+      case LoadPlace::row:
+        read_row();
         break;
       case LoadPlace::frames:
         read_bodies();
@@ -264,6 +268,80 @@ class LoadReader {
       if (const auto word =
               read_choice(context_, names->children[i], section_.path("coordinates"), known))
         (i == 0 ? load_.coordinate : load_.coordinate_2) = *word;
+  }
+
+  /// Reads the coordinates of a coupling, their factors and its offset, in units of its first one.
+  void read_row() {
+    const SourceNode* joints = section_.find("joints");
+    if (!joints) return;
+    const auto count = joints->children.size();
+    if (!joints->is_list() || count == 0) {
+      section_.fault("joints", "expects a list of joints", "Write [first, second, third].");
+      return;
+    }
+    std::vector<CoordinateSpec> row(count);
+    int a = kGround, b = kGround;
+    for (std::size_t i = 0; i < count; ++i) {
+      row[i].joint = read_joint("joints", &joints->children[i], i == 0 ? &load_.a : &a,
+                                i == 0 ? &load_.b : &b);
+      if (row[i].joint.empty()) return;
+    }
+    if (const SourceNode* names = section_.find("coordinates")) {
+      if (!names->is_list() || names->children.size() != count) {
+        section_.fault("coordinates", format("expects one for each of the {} joints", count),
+                       "Write [rz, z], for example.");
+        return;
+      }
+      const std::vector<std::string> known{"x", "y", "z", "rx", "ry", "rz"};
+      for (std::size_t i = 0; i < count; ++i)
+        if (const auto word =
+                read_choice(context_, names->children[i], section_.path("coordinates"), known))
+          row[i].coordinate = *word;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (row[i].joint == row[k].joint && row[i].coordinate == row[k].coordinate) {
+          section_.fault("joints", format("name a coordinate of {} twice", quote(row[i].joint)),
+                         "Name each once, with the sum of its factors.");
+          return;
+        }
+    const Dimension of_first = dimension_of(row[0]);
+    const SourceNode* factors = section_.find("factors");
+    const std::size_t given = !factors ? 0 : factors->is_list() ? factors->children.size() : 1;
+    if (given + 1 != count) {
+      section_.fault(
+          factors ? "factors" : "joints",
+          format("needs {} factors for {} joints, but {} are given", count - 1, count, given),
+          "Give one for each joint but the first: q_1 = f_1 q_2 + f_2 q_3 + ...");
+      return;
+    }
+    for (std::size_t i = 1; i < count; ++i)
+      if (const auto value =
+              read_number(context_, factors->is_list() ? factors->children[i - 1] : *factors,
+                          section_.path("factors"),
+                          {.name = "factors", .dimension = of_first + -1.0 * dimension_of(row[i])}))
+        row[i].factor = *value;
+    if (const SourceNode* offset = section_.find("offset"))
+      if (const auto value = read_number(context_, *offset, section_.path("offset"),
+                                         {.name = "offset", .dimension = of_first}))
+        load_.parameters["offset"] = *value;
+    load_.joint = row[0].joint;
+    load_.coordinate = row[0].coordinate;
+    load_.others.assign(row.begin() + 1, row.end());
+  }
+
+  /// A length if the coordinate is a displacement, else an angle.
+  [[nodiscard]] Dimension dimension_of(const CoordinateSpec& of) const {
+    bool turns = !of.coordinate.empty() && of.coordinate[0] == 'r';
+    const auto found = context_.joints.find(of.joint);
+    if (of.coordinate.empty() && found != context_.joints.end()) {
+      const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
+      if (joint.type.empty()) return dimensions::kNone;  // Its own error is already reported.
+      const JointKind& kind = joint_kind(joint.type);
+      turns = !kind.takes_free_list && kind.free.find('R') != std::string::npos;
+      for (const std::string& free : joint.free) turns = turns || free[0] == 'r';
+    }
+    return turns ? dimensions::kAngle : dimensions::kLength;
   }
 
   /// Reads the function of time of a kind of load.

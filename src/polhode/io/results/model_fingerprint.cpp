@@ -142,10 +142,12 @@ class Fingerprint {
         s.on_surface, s.tolerance, s.nodes);
   }
   void one(const PartAxes& p) { add(p.origin, p.axes, p.body_axes, p.sense); }
+  void one(const CoordinateSpec& c) { add(c.joint, c.coordinate, c.factor); }
   void one(const LoadSpec& l) {
     add(l.name, l.type, l.a, l.b, l.joint, l.coordinate, l.drive, l.Z_a, l.Z_b, l.body_fixed,
         l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters, l.laws, l.words,
         l.matrices, l.joint_2, l.coordinate_2, l.R_a, l.R_b);
+    if (!l.others.empty()) add(l.others);
     // Functions in code are represented by their presence only.
     if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()), l.part_axes);
   }

@@ -236,6 +236,23 @@ KindTable load_table(const LoadKind& kind) {
                         .standard = "the only one of each"});
       fields.push_back(kStays);
       break;
+    case LoadPlace::row:
+      fields.push_back({.name = "joints",
+                        .kind = kNames,
+                        .meaning = "[first joint, second joint, ...]",
+                        .required = true});
+      fields.push_back({.name = "coordinates",
+                        .kind = kNames,
+                        .meaning = "The free coordinate of each: x, y, z, rx, ry or rz.",
+                        .standard = "the only one of each"});
+      fields.push_back({.name = "factors",
+                        .kind = kNumberList,
+                        .meaning = "First coordinate per each of the others: rad/rad, m/rad, ..."});
+      fields.push_back({.name = "offset",
+                        .kind = kNumber,
+                        .meaning = "First coordinate where the others are zero, rad or m.",
+                        .standard = "that of the start"});
+      break;
     case LoadPlace::frames:
       fields.insert(fields.end(), {kLoadBodies, kLoadFrameAt, kLoadPointsBody, kAxis, kXAxis});
       fields[fields.size() - 2].standard = "z";
