@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import NamedTuple, Optional, Sequence, Union, overload
+from typing import Any, NamedTuple, Optional, Sequence, Union, overload
 
 from . import _native
 from ._errors import fault
@@ -35,6 +35,25 @@ class Gradient(NamedTuple):
             bar = f" +- {self.error[path]:.1e}" if path in self.error else ""
             lines.append(f"  by {path}: {slope:.10g}{bar}")
         return "\n".join(lines)
+
+
+def tangents(model: Model, channels: "Sequence[str]", times: Any, wrt: "Sequence[str]", overrides: Overrides) -> Any:
+    """Derivatives of channels at times, step ends, by parameters: an array (times, channels, parameters)."""
+    import numpy as np
+
+    text, name = _text_of(model)
+    of = [f"{channel}@{time!r}" for time in np.asarray(times).tolist() for channel in channels]
+    _, found = _native.gradient(text, name, overrides_list(overrides), of, list(wrt), True, False, True)
+    return np.array([outcome[4] for outcome in found]).reshape(len(times), len(channels), len(wrt))
+
+
+def _text_of(model: Model) -> "tuple[str, str]":
+    """Text and name of a model without callables."""
+    for call in model._calls()[1]:
+        raise fault(f"loads.{call.load}", f"{call.function!r} has no known derivative",
+                    "Write an expression of t instead")
+    text, name, _ = model._source()
+    return text, name
 
 
 @overload
@@ -69,12 +88,10 @@ def gradient(
     """
     outcomes = [of] if isinstance(of, str) else list(of)
     paths = [wrt] if isinstance(wrt, str) else list(wrt)
-    for call in model._calls()[1]:
-        raise fault(f"loads.{call.load}", f"{call.function!r} has no known derivative",
-                    "Write an expression of t instead")
-    text, name, _ = model._source()
-    tangents = len(outcomes) > len(paths) if forward is None else forward
-    parameters, found = _native.gradient(text, name, overrides_list(overrides), outcomes, paths, tangents, error_bars)
+    text, name = _text_of(model)
+    by_tangents = len(outcomes) > len(paths) if forward is None else forward
+    listed = overrides_list(overrides)
+    parameters, found = _native.gradient(text, name, listed, outcomes, paths, by_tangents, error_bars)
     results = []
     for outcome, value, unit, time, by, bars, growth, check, doubts in found:
         for doubt in doubts:

@@ -14,6 +14,7 @@ from typing import Any, Callable, NamedTuple, Optional, Union
 import numpy as np
 
 from ._errors import ModelError, NotConverged
+from ._gradient import tangents
 from ._model import Model
 from ._result import Result
 from ._run import run
@@ -213,12 +214,20 @@ class Fit(NamedTuple):
         return figure
 
 
+def _components(channel: str, count: int) -> "list[str]":
+    """Names of the numbers of a channel of results."""
+    if channel.endswith(".coordinates"):
+        return [f"{channel}.{k}" for k in range(count)]
+    return [channel] if count == 1 else [f"{channel}.{axis}" for axis in "xyz"[:count]]
+
+
 def fit(
     model: Model,
     data: "Mapping[str, Any]",
     parameters: "Mapping[str, float]",
     *,
     bounds: "Optional[Mapping[str, tuple[float, float]]]" = None,
+    jacobian: str = "differences",
 ) -> Fit:
     """Estimates parameters of a model from measured channels, by scipy.optimize.least_squares.
 
@@ -226,10 +235,14 @@ def fit(
                 or a pandas.DataFrame. Results are interpolated at these times by cubic splines.
     parameters: initial guesses, by path as overrides: {"loads.damper.damping": 0.1}.
     bounds:     (lowest, highest) by path.
+    jacobian:   "differences" of runs, or "exact" tangents of one run, as polhode.gradient: for positions and
+                velocities of bodies and coordinates of joints, with a fixed step.
 
     Raises ModelError or NotConverged if the model does not run at the initial guesses, ValueError if the
     lengths of the data differ or times decrease.
     """
+    if jacobian not in ("differences", "exact"):
+        raise ValueError(f"jacobian is '{jacobian}': use differences or exact")
     from scipy.interpolate import CubicSpline
     from scipy.optimize import least_squares
 
@@ -244,6 +257,7 @@ def fit(
     scale = np.array([abs(parameters[k]) or 1.0 for k in names])
 
     runs: "list[int]" = []
+    latest: "list[Any]" = []  # the last parameters, and their run
 
     def run_at(x: Any) -> Result:
         return run(model, overrides=dict(zip(names, (x * scale).tolist())), progress=False)
@@ -257,16 +271,29 @@ def fit(
             # Not finite: the search takes a shorter step.
             return np.full(sum(values.size for values in measured.values()), np.inf)
         runs.append(1)
+        latest[:] = [x, result]
         parts = []
         for name, values in measured.items():
             channel = np.asarray(result[name]).reshape(len(result.time), -1)
             parts.append((CubicSpline(result.time, channel)(times) - values.reshape(len(times), -1)).ravel())
         return np.concatenate(parts)
 
+    def slopes(x: Any) -> Any:
+        """Derivatives of the residuals: splines through the derivatives of the channels at output times."""
+        at = dict(zip(names, (x * scale).tolist()))
+        result = latest[1] if np.array_equal(latest[0], x) else run_at(x)
+        parts = []
+        for name in measured:
+            channel = np.asarray(result[name]).reshape(len(result.time), -1)
+            by = tangents(model, _components(name, channel.shape[1]), result.time, names, at)
+            parts.append(CubicSpline(result.time, by)(times).reshape(-1, len(names)) * scale)
+        return np.concatenate(parts)
+
     limits = [(bounds or {}).get(k, (-np.inf, np.inf)) for k in names]
     low, high = (np.array([b[i] for b in limits]) / scale for i in (0, 1))
     start = np.array([parameters[k] for k in names]) / scale
-    found = least_squares(residuals, start, bounds=(low, high), diff_step=1e-5, x_scale="jac", xtol=1e-12, ftol=1e-12)
+    way: "dict[str, Any]" = {"jac": slopes} if jacobian == "exact" else {"diff_step": 1e-5}
+    found = least_squares(residuals, start, bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12, **way)
     freedoms = max(1, len(found.fun) - len(names))
     covariance = np.linalg.inv(found.jac.T @ found.jac) * (found.fun @ found.fun / freedoms) * np.outer(scale, scale)
     return Fit(dict(zip(names, (found.x * scale).tolist())), covariance, found.fun, run_at(found.x),

@@ -16,10 +16,12 @@ struct Differentiated {
 };
 
 Differentiated gradient_of(const io::ModelText& source, const std::vector<std::string>& of,
-                           const std::vector<std::string>& wrt, bool forward, bool bars) {
+                           const std::vector<std::string>& wrt, bool forward, bool bars,
+                           bool only_last_adjoint) {
   Differentiated d;
   Model model = io::read_model_text(source.text, source.file, source.overrides);
   d.request.forward = forward;
+  d.request.only_last_adjoint = only_last_adjoint;
   for (const std::string& path : wrt)
     d.request.parameters.push_back(io::gradient_parameter(source, path));
   for (const std::string& outcome : of) d.request.outcomes.push_back(parse_outcome(outcome));
@@ -34,11 +36,12 @@ Differentiated gradient_of(const io::ModelText& source, const std::vector<std::s
 /// error bars, growth, tangent against adjoint, warnings).
 nb::tuple gradient(const std::string& text, const std::string& name,
                    const std::vector<std::string>& overrides, const std::vector<std::string>& of,
-                   const std::vector<std::string>& wrt, bool forward, bool bars) {
+                   const std::vector<std::string>& wrt, bool forward, bool bars,
+                           bool only_last_adjoint) {
   Differentiated d;
   {
     const nb::gil_scoped_release unlocked;
-    d = gradient_of({text, name, name, overrides}, of, wrt, forward, bars);
+    d = gradient_of({text, name, name, overrides}, of, wrt, forward, bars, only_last_adjoint);
   }
   nb::list parameters, outcomes;
   for (const GradientParameter& p : d.request.parameters)
@@ -57,7 +60,8 @@ nb::tuple gradient(const std::string& text, const std::string& name,
 
 void bind_gradient(nb::module_& m) {
   m.def("gradient", &gradient, nb::arg("text"), nb::arg("name"), nb::arg("overrides"),
-        nb::arg("of"), nb::arg("wrt"), nb::arg("forward"), nb::arg("bars"));
+        nb::arg("of"), nb::arg("wrt"), nb::arg("forward"), nb::arg("bars"),
+        nb::arg("only_last_adjoint") = false);
 }
 
 }  // namespace polhode::python

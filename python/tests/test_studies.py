@@ -121,6 +121,24 @@ def test_a_fit_finds_stiffness_and_damper_in_noisy_data() -> None:
         polhode.fit(make_pendulum(), {"time": times, "energy.total": [1]}, {"gravity.2": 9})
 
 
+def test_a_fit_with_exact_tangents_finds_the_same() -> None:
+    times = np.linspace(0, 3, 40)
+    data = {"time": times, "bodies.b.position.z": height(times)}
+    guess = {"variables.k": 36, "variables.c": 1.2}
+    differences = polhode.fit(oscillator(), data, guess)
+    exact = polhode.fit(oscillator(), data, guess, jacobian="exact")
+    assert exact.parameters == pytest.approx(differences.parameters, rel=1e-6)
+    assert exact.covariance == pytest.approx(differences.covariance, rel=1e-3)
+    m = make_pendulum()
+    measured = polhode.run(m, progress=False)
+    angles = {"time": measured.time, "joints.hinge.coordinates": measured["joints.hinge.coordinates"],
+              "bodies.arm.velocity": measured["bodies.arm.velocity"]}
+    fit = polhode.fit(m, angles, {"gravity.2": -9.0}, jacobian="exact")
+    assert fit.parameters["gravity.2"] == pytest.approx(-9.81, rel=1e-9)
+    with pytest.raises(ValueError, match="jacobian is 'best'"):
+        polhode.fit(m, angles, {"gravity.2": -9.0}, jacobian="best")
+
+
 def test_workers_of_a_dask_cluster_give_the_bits_of_this_process_and_may_die(tmp_path: pathlib.Path,
                                                                              monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")

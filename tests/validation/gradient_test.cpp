@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <gradient/gradient_runs.hpp>
+#include <polhode/core/error.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <support/paths.hpp>
 
@@ -374,6 +375,19 @@ TEST(RunGradient, OfTangentsIsThatOfTheAdjoint) {
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t j = 0; j < request.parameters.size(); ++j)
       EXPECT_NEAR(tangents.outcomes[k].by[j] / adjoint.outcomes[k].by[j], 1.0, 1e-11);
+  request.only_last_adjoint = true;
+  const RunGradient quick = differentiate(c.model(), request);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(quick.outcomes[k].by, tangents.outcomes[k].by);
+}
+
+TEST(RunGradient, OfACoordinateByNumberIsThatByName) {
+  GradientCase c = double_pendulum(0.01, 10);
+  c.outcomes = {"joints.B.rz@end", "joints.B.coordinates.0@end"};
+  const RunGradient run = differentiate(c.model(), c.request());
+  EXPECT_EQ(run.outcomes[0].by, run.outcomes[1].by);
+  EXPECT_EQ(run.outcomes[1].unit, "rad");
+  c.outcomes = {"joints.B.coordinates.1"};
+  EXPECT_THROW((void)differentiate(c.model(), c.request()), InputError);
 }
 
 TEST(RunGradient, IsThatOfUnitsInTheFile) {

@@ -99,10 +99,10 @@ class Differentiation {
         request_(request),
         derivative_(system_),
         scales_(state_scales(system_, model_.analysis.duration)) {
-    for (const Outcome& outcome : request.outcomes) {
-      readers_.emplace_back(model_, map, outcome.channel);
-      places_.push_back(places_of(outcome, readers_.back(), system_, tape, *model_.analysis.step));
-    }
+    readers_ = readers_of(model_, map, request.outcomes);
+    for (std::size_t k = 0; k < readers_.size(); ++k)
+      places_.push_back(
+          places_of(request.outcomes[k], readers_[k], system_, tape, *model_.analysis.step));
     for (const GradientParameter& parameter : request.parameters)
       shifts_.emplace_back(parameter, simulation, map, request.outcomes);
   }
@@ -237,11 +237,12 @@ class Differentiation {
 
   void go_backward() {
     const std::size_t outcomes = readers_.size();
+    const std::size_t begin = request_.only_last_adjoint && request_.forward ? outcomes - 1 : 0;
     std::vector<Vec> mu(outcomes, Vec::Zero(derivative_.state_size()));
     std::vector<double> first(outcomes, 0.0), most(outcomes, 0.0);
     std::vector<Vec> by(outcomes, Vec::Zero(start_.cols()));
     const auto look = [&](std::size_t state) {
-      for (std::size_t k = 0; k < outcomes; ++k) {
+      for (std::size_t k = begin; k < outcomes; ++k) {
         if (const Weight* w = weight_at(k, state)) {
           mu[k] += w->by_state;
           first[k] += w->by_state.cwiseProduct(scales_).lpNorm<Eigen::Infinity>();
@@ -255,7 +256,7 @@ class Differentiation {
       Trial step = derivative_.trial(from, to, tape_.lengths[i]);
       step.context.conserving = model_.analysis.conserving;
       derivative_.linearize(from, to, step);
-      for (std::size_t k = 0; k < outcomes; ++k) {
+      for (std::size_t k = begin; k < outcomes; ++k) {
         if (mu[k].isZero(0.0)) continue;
         by[k] += residuals_[i].transpose() * derivative_.pull(mu[k]);
       }
@@ -264,8 +265,13 @@ class Differentiation {
     check_solved();
     const Vec d = direction();
     for (std::size_t k = 0; k < outcomes; ++k) {
-      by[k] += start_.transpose() * mu[k];
       OutcomeGradient& g = gradients_[k];
+      if (k < begin) {
+        for (std::size_t j = 0; j < g.by.size(); ++j)
+          g.by[j] += tangent_[k][static_cast<Eigen::Index>(j)];
+        continue;
+      }
+      by[k] += start_.transpose() * mu[k];
       g.growth = first[k] > 0.0 ? most[k] / first[k] : 0.0;
       double along = 0.0, size = 0.0, other = 0.0;
       for (Eigen::Index j = 0; j < d.size(); ++j) {

@@ -26,6 +26,9 @@ struct GradientRequest {
   /// Tangents of all parameters instead of the adjoint of each outcome: for more outcomes than
   /// parameters.
   bool forward = false;
+  /// Leaves out the adjoints of all outcomes but the last, and with them their growth and check:
+  /// for many outcomes, forward.
+  bool only_last_adjoint = false;
 };
 
 /// Gradient of one outcome.

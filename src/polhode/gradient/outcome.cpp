@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -84,7 +85,11 @@ OutcomeReader::OutcomeReader(const Model& model, const SystemMap& map, const std
     set_body(model, map, probe.target);
     Z_ = probe.point;
   } else if (list == "joints") {
+    const std::string whole = ".coordinates";  // by number, as in results
+    const bool numbered = name.size() > whole.size() && name.ends_with(whole);
+    if (numbered) name.resize(name.size() - whole.size());
     set_joint(model, map, name, end);
+    if (numbered) set_number(model, end);
   } else {
     refuse_channel(channel);
   }
@@ -108,6 +113,17 @@ void OutcomeReader::set_joint(const Model& model, const SystemMap& map, const st
   what_ = What::coordinate;
   coordinate_ = coordinate;
   unit_ = coordinate.empty() || coordinate[0] == 'r' ? "rad" : "m";
+}
+
+void OutcomeReader::set_number(const Model& model, const std::string& number) {
+  const System system = build_system(model);
+  const std::vector<std::string> names = joint_at(system, joint_).coordinate_names();
+  const std::size_t i = number.size() == 1 && number[0] >= '0' && number[0] <= '5'
+                            ? static_cast<std::size_t>(number[0] - '0')
+                            : names.size();
+  if (i >= names.size()) refuse_channel(channel_);
+  coordinate_ = names[i];
+  unit_ = coordinate_[0] == 'r' ? "rad" : "m";
 }
 
 double OutcomeReader::value(const System& system, const State& state) const {
@@ -136,6 +152,16 @@ double OutcomeReader::value(const System& system, const State& state) const {
   const BodyMotion m = system.motion(projected, body_);
   const Vec3 omega = m.omega();
   return (what_ == What::turn ? omega : Vec3(m.v + omega.cross(m.q * Z_)))[component_];
+}
+
+std::vector<OutcomeReader> readers_of(const Model& model, const SystemMap& map,
+                                      const std::vector<Outcome>& outcomes) {
+  std::map<std::string, OutcomeReader> known;
+  std::vector<OutcomeReader> readers;
+  for (const Outcome& outcome : outcomes)
+    readers.push_back(
+        known.try_emplace(outcome.channel, model, map, outcome.channel).first->second);
+  return readers;
 }
 
 Vec OutcomeReader::by_state(const System& system, const State& state) const {

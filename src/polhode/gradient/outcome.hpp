@@ -24,7 +24,8 @@ struct Outcome {
 /// Reads a channel of positions or velocities from a state, and its derivative.
 ///
 /// Channels: bodies.NAME.position.x, .velocity.x and .angular_velocity.x of the centre of mass;
-/// probes.NAME.x and .vx of a probe of a body; joints.NAME.COORDINATE. Velocities are projected
+/// probes.NAME.x and .vx of a probe of a body; joints.NAME.COORDINATE, by its name, or its number
+/// as joints.NAME.coordinates.0. Velocities are projected
 /// onto the constraints, as they are reported.
 class OutcomeReader {
  public:
@@ -43,6 +44,7 @@ class OutcomeReader {
   void set_body(const Model& model, const SystemMap& map, const std::string& name);
   void set_joint(const Model& model, const SystemMap& map, const std::string& name,
                  const std::string& coordinate);
+  void set_number(const Model& model, const std::string& number);
 
   What what_ = What::position;
   int body_ = kGround, component_ = 0;
@@ -50,5 +52,9 @@ class OutcomeReader {
   Vec3 Z_ = Vec3::Zero();
   std::string channel_, coordinate_, unit_;
 };
+
+/// Readers of outcomes, one for each; those of one channel are alike.
+[[nodiscard]] std::vector<OutcomeReader> readers_of(const Model& model, const SystemMap& map,
+                                                    const std::vector<Outcome>& outcomes);
 
 }  // namespace polhode

@@ -108,8 +108,7 @@ ParameterShift::ParameterShift(const GradientParameter& parameter, const Simulat
     };
     join(changed.bodies, items.bodies);
     join(changed.interactions, items.interactions);
-    for (const Outcome& outcome : outcomes)
-      n.readers.emplace_back(n.simulation->model(), map, outcome.channel);
+    n.readers = readers_of(n.simulation->model(), map, outcomes);
   }
   set_items(base.system(), changed);
 }
