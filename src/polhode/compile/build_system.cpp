@@ -11,19 +11,18 @@
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>
 #include <polhode/compile/centrifugal_forces.hpp>
+#include <polhode/compile/describe_load.hpp>
 #include <polhode/compile/joint_resistance.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/joints/registry.hpp>
-#include <polhode/loads/coordinate_motion.hpp>
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/gear_geometry.hpp>
 #include <polhode/model/switched_contacts.hpp>
 #include <polhode/model/velocity_jumps.hpp>
-#include <polhode/system/angle_quotient.hpp>
 
 namespace polhode {
 
@@ -248,7 +247,7 @@ class Builder {
                          gear->mixed ? "Give radius alone" : "Give ratio alone");
     }
     if (kind.place == LoadPlace::row)
-      coupled = coupled_of(where, load);
+      coupled = coupled_coordinates(where, load, model_, system_.group<Joint>().items());
     else
       check_movable(where, kind.place == LoadPlace::body ? b : a, b);
     for (const auto& [body, Z] : {std::pair(a, load.Z_a), std::pair(b, load.Z_b)})
@@ -284,60 +283,6 @@ class Builder {
     d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
     if (load.of_motion.index() != 0) add_function(where, load, kind, d);
     kind.add(system_, d);
-  }
-
-  /// Adds the function of a load on bodies that is given in code.
-  static void add_function(const std::string& where, const LoadSpec& load, const LoadKind& kind,
-                           LoadDescription& d) {
-    const std::string key = kind.function_key();
-    if (key.empty())
-      throw InputError(where, format("a '{}' cannot be a function of the motion", kind.name),
-                       "Use a force, moment, axial_force, rotary_motor or linear_motor");
-    const bool of_point = kind.place == LoadPlace::body;
-    const auto* point = std::get_if<PointFunction>(&load.of_motion);
-    const auto* coordinate = std::get_if<CoordinateFunction>(&load.of_motion);
-    if (of_point != (point != nullptr))
-      throw InputError(format("{}.{}", where, key),
-                       of_point ? "is a function of a coordinate" : "is a function of a point",
-                       of_point ? "Give one of the motion of the point (PointFunction)"
-                                : "Give one of the coordinate and its rate (CoordinateFunction)");
-    if (point ? !point->value : !coordinate->value)
-      throw InputError(format("{}.{}", where, key), "is a function without a value",
-                       "Set its value");
-    if (!load.drive.empty() && load.drive != key)
-      throw InputError(format("{}.{}", where, load.drive),
-                       format("is prescribed, so the {} cannot be given too", key),
-                       "Give one of them");
-    d.of_motion = placed(load.of_motion, load.part_axes, load.body_fixed, kind.vector == "moment");
-    if (!of_point) d.drive = key;
-  }
-
-  /// The coordinates of a coupling. Of its turns at the start the first one has as many as bring it
-  /// nearest to the row, the others none.
-  [[nodiscard]] std::vector<CoupledCoordinate> coupled_of(const std::string& where,
-                                                          const LoadSpec& load) {
-    std::vector<CoupledCoordinate> list;
-    const auto add = [&](const std::string& name, const std::string& coordinate, double factor) {
-      const auto index = static_cast<std::size_t>(model_.joint_index(name));
-      const Joint& joint = system_.group<Joint>().items()[index];
-      const JointSpec& of = model_.joints[index];
-      CoupledCoordinate c{free_coordinate(where, {&joint, coordinate}), joint.bodies, factor};
-      const auto at_start = [&](int body, int number) {
-        return number == kGround ? BodyStep::ground(1.0) : instant(body);
-      };
-      c.near = coordinate_at_n1(c.coordinate, at_start(of.a, joint.bodies.a),
-                                at_start(of.b, joint.bodies.b), 0.0);
-      list.push_back(c);
-    };
-    add(load.joint, load.coordinate, 1.0);
-    for (const CoordinateSpec& other : load.others)
-      add(other.joint, other.coordinate, -other.factor);
-    const auto offset = load.parameters.find("offset");
-    if (offset == load.parameters.end() || list[0].coordinate.index() != 0) return list;
-    double row = offset->second;
-    for (std::size_t k = 1; k < list.size(); ++k) row -= list[k].factor * list[k].near;
-    list[0].near = nearest_turn(list[0].near, row);
-    return list;
   }
 
   [[nodiscard]] GearGeometry gear_of(const std::string& where,
@@ -431,11 +376,7 @@ class Builder {
     }
   }
 
-  [[nodiscard]] BodyStep instant(int body) const {
-    const BodySpec& b = *spec(body);
-    return BodyStep::at_instant(b.position, b.orientation.normalized().toRotationMatrix(),
-                                Vec3::Zero(), Vec3::Zero());
-  }
+  [[nodiscard]] BodyStep instant(int body) const { return start_of(*spec(body)); }
 
   /// Makes the interactions of events switchable; events at the start define the initial state.
   void add_switching() {

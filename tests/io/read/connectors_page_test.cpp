@@ -5,7 +5,7 @@
 namespace polhode::test::connectors_page_tests {
 
 TEST(ConnectorsPage, EveryExampleRuns) {
-  EXPECT_EQ(run_page_examples("docs/reference/connectors.md"), 11);
+  EXPECT_EQ(run_page_examples("docs/reference/connectors.md"), 12);
 }
 
 TEST(JointsPage, EveryExampleRuns) { EXPECT_EQ(run_page_examples("docs/reference/joints.md"), 1); }

@@ -6,6 +6,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/io/read/read_coupling.hpp>
 #include <polhode/io/read/time_function.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
@@ -99,7 +100,7 @@ class LoadReader {
         read_stays();
         break;
       case LoadPlace::row:
-        read_row();
+        read_coupling(context_, section_, load_);
         break;
       case LoadPlace::frames:
         read_bodies();
@@ -270,80 +271,6 @@ class LoadReader {
         (i == 0 ? load_.coordinate : load_.coordinate_2) = *word;
   }
 
-  /// Reads the coordinates of a coupling, their factors and its offset, in units of its first one.
-  void read_row() {
-    const SourceNode* joints = section_.find("joints");
-    if (!joints) return;
-    const auto count = joints->children.size();
-    if (!joints->is_list() || count == 0) {
-      section_.fault("joints", "expects a list of joints", "Write [first, second, third].");
-      return;
-    }
-    std::vector<CoordinateSpec> row(count);
-    int a = kGround, b = kGround;
-    for (std::size_t i = 0; i < count; ++i) {
-      row[i].joint = read_joint("joints", &joints->children[i], i == 0 ? &load_.a : &a,
-                                i == 0 ? &load_.b : &b);
-      if (row[i].joint.empty()) return;
-    }
-    if (const SourceNode* names = section_.find("coordinates")) {
-      if (!names->is_list() || names->children.size() != count) {
-        section_.fault("coordinates", format("expects one for each of the {} joints", count),
-                       "Write [rz, z], for example.");
-        return;
-      }
-      const std::vector<std::string> known{"x", "y", "z", "rx", "ry", "rz"};
-      for (std::size_t i = 0; i < count; ++i)
-        if (const auto word =
-                read_choice(context_, names->children[i], section_.path("coordinates"), known))
-          row[i].coordinate = *word;
-    }
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < i; ++k)
-        if (row[i].joint == row[k].joint && row[i].coordinate == row[k].coordinate) {
-          section_.fault("joints", format("name a coordinate of {} twice", quote(row[i].joint)),
-                         "Name each once, with the sum of its factors.");
-          return;
-        }
-    const Dimension of_first = dimension_of(row[0]);
-    const SourceNode* factors = section_.find("factors");
-    const std::size_t given = !factors ? 0 : factors->is_list() ? factors->children.size() : 1;
-    if (given + 1 != count) {
-      section_.fault(
-          factors ? "factors" : "joints",
-          format("needs {} factors for {} joints, but {} are given", count - 1, count, given),
-          "Give one for each joint but the first: q_1 = f_1 q_2 + f_2 q_3 + ...");
-      return;
-    }
-    for (std::size_t i = 1; i < count; ++i)
-      if (const auto value =
-              read_number(context_, factors->is_list() ? factors->children[i - 1] : *factors,
-                          section_.path("factors"),
-                          {.name = "factors", .dimension = of_first + -1.0 * dimension_of(row[i])}))
-        row[i].factor = *value;
-    if (const SourceNode* offset = section_.find("offset"))
-      if (const auto value = read_number(context_, *offset, section_.path("offset"),
-                                         {.name = "offset", .dimension = of_first}))
-        load_.parameters["offset"] = *value;
-    load_.joint = row[0].joint;
-    load_.coordinate = row[0].coordinate;
-    load_.others.assign(row.begin() + 1, row.end());
-  }
-
-  /// A length if the coordinate is a displacement, else an angle.
-  [[nodiscard]] Dimension dimension_of(const CoordinateSpec& of) const {
-    bool turns = !of.coordinate.empty() && of.coordinate[0] == 'r';
-    const auto found = context_.joints.find(of.joint);
-    if (of.coordinate.empty() && found != context_.joints.end()) {
-      const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
-      if (joint.type.empty()) return dimensions::kNone;  // Its own error is already reported.
-      const JointKind& kind = joint_kind(joint.type);
-      turns = !kind.takes_free_list && kind.free.find('R') != std::string::npos;
-      for (const std::string& free : joint.free) turns = turns || free[0] == 'r';
-    }
-    return turns ? dimensions::kAngle : dimensions::kLength;
-  }
-
   /// Reads the function of time of a kind of load.
   void read_drive(const LoadKind& kind) {
     if (kind.drives.empty()) return;
@@ -477,24 +404,8 @@ class LoadReader {
     load_.matrices[key] = 0.5 * (M + M.transpose());
   }
 
-  /// Name of a joint and its bodies; empty if there is none.
   std::string read_joint(const char* key, const SourceNode* value, int* a, int* b) {
-    if (!value) return {};
-    const auto name = read_text(context_, *value, section_.path(key));
-    if (!name) return {};
-    const auto found = context_.joints.find(*name);
-    if (found == context_.joints.end()) {
-      const std::vector<std::string> names = context_.joint_names();
-      context_.fault(
-          *value, section_.path(key), "unknown joint " + quote(*name),
-          did_you_mean(*name, names) +
-              (names.empty() ? "The model has no joints." : "Joints: " + name_list(names) + "."));
-      return {};
-    }
-    const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
-    *a = joint.a;
-    *b = joint.b;
-    return *name;
+    return read_joint_of_load(context_, section_, key, value, a, b);
   }
 
   void require_effect(const LoadKind& kind) {
