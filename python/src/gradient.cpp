@@ -37,7 +37,7 @@ Differentiated gradient_of(const io::ModelText& source, const std::vector<std::s
 nb::tuple gradient(const std::string& text, const std::string& name,
                    const std::vector<std::string>& overrides, const std::vector<std::string>& of,
                    const std::vector<std::string>& wrt, bool forward, bool bars,
-                           bool only_last_adjoint) {
+                   bool only_last_adjoint) {
   Differentiated d;
   {
     const nb::gil_scoped_release unlocked;

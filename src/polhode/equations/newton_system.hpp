@@ -27,8 +27,8 @@ struct KktMap {
 /// Batched evaluation of interactions, one virtual call per batch of one group, whose terms are
 /// passed to a visitor. It owns the only buffers needed and allocates once.
 ///
-/// Of a row with several parts the last one visited has the value of the whole row and its proximal
-/// weight; the value and the weight of the others are zero. @eq{coupling-row}
+/// The residual of a row with several parts, and its proximal weight, are passed with its last
+/// part; those of the others are zero. @eq{coupling-row}
 class InteractionSweep {
  public:
   explicit InteractionSweep(const System& system);

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// What may differ between two compilations of a model: moving bodies, and interactions.
+/// Moving bodies and interactions whose data may differ between two models of equal topology.
 struct ChangedItems {
   std::vector<char> bodies, interactions;  ///< 1 for those that may differ.
 };

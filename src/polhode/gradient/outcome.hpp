@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// What is differentiated: a channel at one time, its mean or its maximum over the run.
+/// Outcome of a run: a channel at one time, its mean or its maximum over the run.
 struct Outcome {
   enum class At { end, time, mean, maximum };
   std::string text;     ///< As given: "bodies.rod.position.x@end".

@@ -13,8 +13,8 @@ namespace polhode {
 
 namespace {
 
-/// Step of the differences by a parameter, as a part of it: with order four the truncation is 1e-12
-/// of the value, and so is the round-off.
+/// Relative step of the differences by a parameter: at order four the truncation error and the
+/// round-off error are both 1e-12 of the value.
 constexpr double kParameterStep = 1e-3;
 /// Step by a parameter that is zero, in its unit: small beside a size of 0.1, such as a length.
 constexpr double kStepFromZero = 1e-4;
@@ -23,7 +23,7 @@ constexpr double kSameBreakTime = 1e-12;
 /// Largest number of breaks that are compared.
 constexpr int kComparedBreaks = 1000;
 
-/// What differs between two systems besides numbers; empty: nothing.
+/// Name of a difference of topology between two systems; empty if there is none.
 std::string difference_of_systems(const System& a, const System& b) {
   if (a.body_count() != b.body_count()) return "the number of bodies";
   if (a.interactions().size() != b.interactions().size()) return "the number of joints and loads";
@@ -170,8 +170,8 @@ Vec ParameterShift::start_derivative(const System& system, const State& start) c
 }
 
 void ParameterShift::begin(const State& start) {
-  // What the start sets follows from the neighbour's own start; all else is a function of the
-  // motion, which a step of no length at the base's start gives.
+  // Initial values in the history come from the neighbour's own start; all others are functions of
+  // the motion, found by a step of zero length at the base's start.
   for (Neighbour& n : at_) {
     n.history = n.simulation->state().history;
     State at = start;

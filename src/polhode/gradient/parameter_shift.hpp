@@ -34,8 +34,8 @@ class ParameterShift {
   [[nodiscard]] Vec start_derivative(const System& system, const State& start) const;
   /// Memory at the start of the run that is differentiated.
   void begin(const State& start);
-  /// Derivative of the residual of a step at fixed motion, by body, then rows: appended as entries
-  /// of a column.
+  /// Derivative of the residual of a step by the parameter at fixed motion, six numbers for each
+  /// body, then the rows: added to the entries of this column.
   /// @param steps  Of the bodies, the ground last. @param step  Without tangents.
   void add_residual(const State& from, const Trial& step, std::span<const BodyStep> steps,
                     int column, std::vector<Eigen::Triplet<double>>& entries);

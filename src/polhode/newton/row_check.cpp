@@ -62,7 +62,7 @@ bool RowCheck::hold(const State& state, const Trial& trial, bool rounded) {
   std::fill(gaps_.begin(), gaps_.end(), 0.0);
   PairTerms terms;
   terms.set_zero();
-  double of_parts = 0.0, noise_of_parts = 0.0;  // of a row of which not all parts were visited
+  double of_parts = 0.0, noise_of_parts = 0.0;  // sums over a row's parts so far
   const double turned = kTurnOfStep * static_cast<double>(state.ledger.steps + 1);
   for (int i = 0; i < static_cast<int>(system_->interactions().size()); ++i) {
     const InteractionRef& ref = system_->interactions()[i];

@@ -16,7 +16,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   VelocityReport report;
   s.take(state);
   double largest_scale = 0.0;
-  double of_parts = 0.0;  // rate of a row of which not all parts were visited
+  double of_parts = 0.0;  // sum of the rates of a row's parts so far
   const auto velocity = [&](int body) {
     Vec6 v = Vec6::Zero();
     if (body != kGround) v << s.steps[body].v_n1, s.steps[body].Lambda_n1 * s.steps[body].W_n1;

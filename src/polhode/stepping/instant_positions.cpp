@@ -46,7 +46,7 @@ PositionReport InstantSolver::assemble_positions(State& state, double tolerance)
   std::vector<BodyMotion> given;
 
   PositionDefect defect;
-  double noise_of_parts = 0.0;  // of a row of which not all parts were visited
+  double noise_of_parts = 0.0;  // sum over a row's parts so far
   const auto measure = [&](bool with_matrix) {
     defect = {};
     s.run(
