@@ -51,6 +51,21 @@ TEST(VelocityProblem, ABodyLeavesWithItsRestitutionWhereverItTouchesInTheStep) {
     }
 }
 
+/// What the projection onto joints took from the velocities of the step is part of the energy
+/// before the impact.
+TEST(VelocityProblem, AnImpactHasTheEnergyThatTheProjectionOntoJointsTook) {
+  for (const double phi : {0.1, 0.5, 0.9})
+    for (const double e : {0.0, 0.5, 1.0}) {
+      const double w = 2.0, m = 3.0, lost = 1e-3;
+      Bodies one{Mat::Ones(1, 1), Vec::Constant(1, m), Vec::Constant(1, w - 2.0 * phi * w)};
+      VelocityProblem problem = one.problem({closing(m, w, phi, e)});
+      problem.projected = lost;
+      EXPECT_NEAR(one.after(problem.impact().impulses)[0], e * std::sqrt(w * w + 2.0 * lost / m),
+                  1e-13)
+          << phi << " " << e;
+    }
+}
+
 /// A wall driven at 1 m/s hits a body at rest: 1 + e. The driven wall adds its speed to the row.
 TEST(VelocityProblem, AMovingWallReturnsTheRelativeSpeed) {
   for (const double phi : {0.2, 0.7})

@@ -170,6 +170,65 @@ TEST_P(EveryResistance, HasTheTangentsOfItsStops) {
 
 TEST(SlackLink, HasTheTangentsOfItsStops) { expect_tangents_of_stops("slack_link"); }
 
+/// Stops that are rows: the wrench of a unit force does the change of the gap as work, and the
+/// gradient at the end is the derivative of the gap there.
+void expect_gradients_of_rows(const std::string& type) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    JointResistance r;
+    auto sampled = sample(type, r, seed, context_of(1.0));
+    auto& joint = sampled.joint;
+    auto& m = sampled.motion;
+    const JointCoordinates c = m.at_start([&](const PairStep& s) { return joint.coordinates(s); });
+    const std::vector<std::string> names = joint.coordinate_names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      JointLimits limits = stops(c.value[k] - 0.1, c.value[k] + 0.2, 0.4);
+      limits.by_rows = true;
+      limits.radius = 0.7;
+      (names[k][0] != 'r' ? r.slide : r.turn) = limits;
+    }
+    joint.set_resistance(r);
+    EXPECT_EQ(joint.unilateral(), 2 * static_cast<int>(names.size()));
+    EXPECT_FALSE(joint.has_barrier());
+    const auto rows = [&](const Displacement& d) {
+      return m.with(d, [&](const PairStep& s) {
+        std::vector<UnilateralRow> list;
+        joint.unilateral_rows(s, list);
+        return list;
+      });
+    };
+    const std::vector<UnilateralRow> found = rows(Displacement::Zero());
+    ASSERT_EQ(static_cast<int>(found.size()), joint.unilateral());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const UnilateralRow& row = found[k];
+      EXPECT_EQ(row.restitution, 0.4);
+      const bool turns = names[k / 2][0] == 'r';
+      EXPECT_NEAR(row.gap_n, (turns ? 0.7 : 1.0) * (k % 2 == 0 ? 0.1 : 0.2), 1e-12) << type;
+      EXPECT_NEAR(m.with(Displacement::Zero(),
+                         [&](const PairStep& s) { return change_of_gap(row, s.a, s.b); }),
+                  row.gap_n1 - row.gap_n, 1e-12)
+          << type << " seed " << seed;
+      Mat by(1, 12);
+      by << row.by_a.transpose(), row.by_b.transpose();
+      expect_derivative(
+          by,
+          [&](const Vec& d) -> Vec {
+            Displacement both = Displacement::Zero();
+            both = d;
+            return Vec::Constant(1, rows(both)[k].gap_n1);
+          },
+          type + " gap");
+    }
+  }
+}
+
+// @tests{contact-rows}
+TEST_P(EveryResistance, HasTheGradientsOfItsStopsAsRows) {
+  if (GetParam() == "spherical" || GetParam() == "universal") return;
+  expect_gradients_of_rows(GetParam());
+}
+
+TEST(SlackLink, HasTheGradientsOfItsStopsAsRows) { expect_gradients_of_rows("slack_link"); }
+
 // Work of the wrench: the energy that the bristle stores and dissipates; it never returns more than
 // it stored.
 // @tests{contact-bristle}

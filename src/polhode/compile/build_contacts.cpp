@@ -57,7 +57,8 @@ class ContactsBuilder {
     shapes_of_.resize(model_.bodies.size());
     for (int i = 0; i < static_cast<int>(map_.body.size()); ++i)
       shapes_of_[static_cast<std::size_t>(map_.body[static_cast<std::size_t>(i)])].push_back(i);
-    if (has_surfaces() && !any_may_meet()) {  // only surfaces of solids are in contact
+    // Only surfaces of solids are in contact, or stops of joints are rows.
+    if ((has_surfaces() || set_->shapes().empty()) && !any_may_meet()) {
       map_.body.clear();
       return nullptr;
     }
@@ -247,7 +248,11 @@ void check_sides(const Model& model, std::vector<InputError>& faults) {
     check_material(model, side, faults, reported);
   }
   static_cast<void>(ContactGroups(model, &faults));
-  if (!any)
+  const bool stops =
+      model.contacts.rigid() &&
+      std::any_of(model.joints.begin(), model.joints.end(),
+                  [](const JointSpec& joint) { return joint.limits || joint.angle_limits; });
+  if (!any && !stops)
     faults.emplace_back("contacts", "no body that moves has a shape that touches",
                         "Give bodies shapes, or leave 'contacts' out");
 }

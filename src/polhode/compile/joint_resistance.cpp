@@ -48,12 +48,16 @@ Scales scales_of(const Model& model, const JointSpec& joint) {
   return s;
 }
 
-JointLimits limits_of(const JointLimitsSpec& spec, const AnalysisSpec& analysis, double load,
-                      double inertia, double length) {
+/// @param length  Radius of gyration; 1 for an angle. @param radius  Of an angle's rows.
+JointLimits limits_of(const JointLimitsSpec& spec, const Model& model, double load, double inertia,
+                      double length, double radius) {
+  const AnalysisSpec& analysis = model.analysis;
   JointLimits limits;
   if (spec.lower) limits.lower = *spec.lower;
   if (spec.upper) limits.upper = *spec.upper;
   limits.restitution = spec.restitution;
+  limits.by_rows = model.contacts.rigid() && analysis.type == "dynamics";
+  limits.radius = radius;
   const double band = spec.band.value_or(kBand * length);
   const double by_step =
       analysis.step ? kBarrierByStep * inertia / (*analysis.step * *analysis.step) : 0.0;
@@ -92,9 +96,9 @@ JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
     r.friction = f;
   }
   if (slides && joint.limits)
-    r.slide = limits_of(*joint.limits, model.analysis, s.weight, s.mass, s.length);
+    r.slide = limits_of(*joint.limits, model, s.weight, s.mass, s.length, 1.0);
   const auto& angle = slides ? joint.angle_limits : joint.limits;
-  if (angle) r.turn = limits_of(*angle, model.analysis, s.weight * s.length, s.inertia, 1.0);
+  if (angle) r.turn = limits_of(*angle, model, s.weight * s.length, s.inertia, 1.0, s.length);
   return r;
 }
 

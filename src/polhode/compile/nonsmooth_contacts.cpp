@@ -59,6 +59,14 @@ void check_rigid(const Model& model, std::vector<InputError>& faults) {
            "Use law: barrier in this model");
   const AnalysisSpec& a = model.analysis;
   if (a.type != "dynamics") return;
+  for (const JointSpec& joint : model.joints)
+    for (const auto& [key, limits] :
+         {std::pair("limits", joint.limits), std::pair("angle_limits", joint.angle_limits)}) {
+      if (!limits || !(limits->band || limits->stiffness)) continue;
+      refuse(format("joints.{}.{}.{}", joint.name, key, limits->band ? "band" : "stiffness"),
+             "cannot be combined with the law rigid, with which stops do not give way",
+             "Leave it out, or use law: barrier");
+    }
   if (a.rho_inf != 1.0)
     refuse("analysis.rho_inf",
            format("is {:g}, but the law rigid uses the midpoint rule", a.rho_inf),

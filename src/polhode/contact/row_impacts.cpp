@@ -9,20 +9,11 @@
 
 namespace polhode::contact {
 
-namespace {
-
-/// Accuracy of positions, as a part of the model's size: that of accepted Newton iterations.
-constexpr double kTouching = 1e-11;
-/// Overlap that rows which are solved cannot leave, in gaps that count as touching.
-constexpr double kOverlap = 100.0;
-
-}  // namespace
-
-double ContactSet::touching_gap() const { return kTouching * system_->length_scale(); }
+double ContactSet::touching_gap() const { return system_->touching_gap(); }
 
 /// The bodies that overlap most at the end of a step, by more than the accuracy of rows.
 std::optional<std::pair<int, int>> ContactSet::overlapping(std::span<const BodyStep> steps) const {
-  double deepest = -kOverlap * touching_gap();
+  double deepest = -kOverlapGaps * touching_gap();
   std::optional<std::pair<int, int>> pair;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     const Point& p = points_[static_cast<std::size_t>(i)];
@@ -38,11 +29,12 @@ std::optional<std::pair<int, int>> ContactSet::overlapping(std::span<const BodyS
   return pair;
 }
 
-/// Lists the rows that were closed at t_n or touch at t_{n+1}, if any of them closes or begins to
-/// stick: nothing changes otherwise. @eq{velocity-problem}
+/// Lists the rows that were closed at t_n or touch at t_{n+1}, if any of them, or one that is
+/// listed already, closes or begins to stick: nothing changes otherwise. @eq{velocity-problem}
 void ContactSet::find_rows(State& state, std::vector<PairImpact>& list) {
-  bool changes = false;
   const std::size_t first = list.size();
+  bool changes = std::any_of(list.begin(), list.end(),
+                             [](const PairImpact& r) { return r.row && r.row->changes(); });
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[static_cast<std::size_t>(i)];
     const PointHistory& h = p.data.history;
@@ -58,8 +50,8 @@ void ContactSet::find_rows(State& state, std::vector<PairImpact>& list) {
                     .stops = h.closed && h.slips && sticks && r.impact.mu > 0.0,
                     .touches = touch,
                     .restitution = p.restitution,
-                    .absorbed = std::max(0.0, p.absorbed)};
-    changes = changes || r.row->closes() || r.row->stops;
+                    .absorbed = p.gap_n <= touching_gap() ? 0.0 : std::max(0.0, p.absorbed)};
+    changes = changes || r.row->changes();
     settling_.push_back(i);
     list.push_back(std::move(r));
   }

@@ -61,7 +61,7 @@ SparseEngine::SparseEngine(const System& system, const std::string& solver, Mome
                            NodeFactor policy)
     : system_(&system), newton_(system, form), solver_(linear::make_linear_solver(solver)) {
   if (!system.nodes().empty()) nodes_.emplace(system, policy);
-  if (RigidContacts::of(system))
+  if (UnilateralRows::of(system))
     rows_.emplace(system);
   else if (system.contacts())
     contacts_.emplace(system);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include <polhode/engines/condensed_nodes.hpp>
-#include <polhode/engines/rigid_contacts.hpp>
+#include <polhode/engines/unilateral_rows.hpp>
 #include <polhode/equations/body_contact_assembler.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/equations/newton_engine.hpp>
@@ -70,7 +70,7 @@ class SparseEngine final : public NewtonEngine {
   std::unique_ptr<linear::LinearSolver> solver_;
   std::optional<CondensedNodes> nodes_;
   std::optional<BodyContactAssembler> contacts_;
-  std::optional<RigidContacts> rows_;
+  std::optional<UnilateralRows> rows_;
   bool searches_ = false;  ///< Line search on the merit.
   Vec rhs_, x_;
   IterateSnapshot before_;  ///< The previous iterate, as long as increments are large.

@@ -142,7 +142,8 @@ void require_differentiable(const Model& model, const System& system) {
   for (const LoadSpec& load : model.loads) check_load(load);
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
-    if (!traits.set_valued && !traits.has_barrier && !traits.compliant) continue;
+    if (!traits.set_valued && !traits.has_barrier && !traits.compliant && traits.unilateral == 0)
+      continue;
     refuse_gradient(format("{} '{}'", system.group(ref.group).kind(), system.name(ref)),
                     "has a law that jumps, at which there is no derivative",
                     "Use a law without jumps");

@@ -118,7 +118,7 @@ void Course::before_impact() {
   const std::vector<ContactRows>& contacts = problem_.contacts;
   const Mat& A = problem_.A;
   std::vector<Index> C;
-  double stored = 0.0;
+  double stored = problem_.projected;
   for (const ContactRows& c : contacts)
     if (c.closes()) {
       C.push_back(c.normal);

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// A contact at the end of a step in which it was a unilateral row, with its friction.
+/// A contact or stop at the end of a step in which it was a unilateral row, with its friction.
 struct ContactRows {
   Eigen::Index normal = 0;     ///< Row of the normal velocity, positive: separating.
   Eigen::Index tangents = -1;  ///< First of two rows of the slip; −1: no friction.
@@ -39,6 +39,8 @@ struct VelocityProblem {
   Vec w;  ///< Velocities of the rows at the end of the step, by drives as well [m/s].
   std::vector<ContactRows> contacts;
   double rounding = 0.0;  ///< Of velocities [m/s].
+  /// Energy of the velocities of the step that joints do not admit, by which it exceeds that of w.
+  double projected = 0.0;
 
   struct Result {
     Vec impulses;      ///< Change the velocities of the step to those after the impact [N s].

@@ -85,11 +85,18 @@ class Joint : public InteractionItem {
   [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_ && !records_; }
   [[nodiscard]] bool conservative() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
-  [[nodiscard]] bool works() const { return resistance_ != nullptr || penalised(); }
+  [[nodiscard]] bool works() const {
+    return (resistance_ && resistance_->has_forces()) || penalised();
+  }
   [[nodiscard]] bool compliant() const { return penalised(); }
-  [[nodiscard]] bool has_barrier() const { return resistance_ && resistance_->has_limits(); }
+  [[nodiscard]] bool has_barrier() const { return resistance_ && resistance_->has_barrier(); }
   [[nodiscard]] double clearance(const PairStep& step) const;
   void impacts(const PairStep& step, std::vector<Impact>& list) const;
+  [[nodiscard]] int unilateral() const { return resistance_ ? resistance_->rows() : 0; }
+  [[nodiscard]] int unilateral_entry() const {
+    return unilateral() > 0 ? angles() + resistance_->row_entry() : -1;
+  }
+  void unilateral_rows(const PairStep& step, std::vector<UnilateralRow>& list) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   [[nodiscard]] double reach() const;
   void evaluate(const PairStep& step, PairTerms& terms) const;

@@ -8,7 +8,7 @@
 #include <polhode/dynamics/load_step.hpp>
 #include <polhode/joints/parts.hpp>
 #include <polhode/joints/parts/link_length.hpp>
-#include <polhode/joints/resistance.hpp>
+#include <polhode/joints/resistance_coordinates.hpp>
 
 namespace polhode {
 
@@ -57,26 +57,6 @@ double slide_rate(const Configuration& q, const BodyStep& a, const BodyStep& b, 
 
 }  // namespace
 
-/// One free coordinate over the step.
-struct Resistance::Coordinate {
-  double at_n = 0.0, at_n1 = 0.0;
-  /// Factor of the coordinate in the bristle: for an angle the sleeve's radius.
-  double lever = 1.0;
-  Vec6 on_a, on_b;     ///< Discrete gradient: wrench by generalised force.
-  Vec6 by_a, by_b;     ///< Derivative of at_n1.
-  double force = 0.0;  ///< Generalised, on b along +.
-  Vec6 D_a, D_b;       ///< Its derivative.
-  Vec6 by_lambda;      ///< Likewise, by the multipliers.
-  int angle = -1;      ///< Index among the joint's angles.
-};
-
-struct Resistance::Motion {
-  int count = 0;
-  Coordinate of[kMax];
-  AngleStep angle[2];
-  int slide = -1, turn = -1;  ///< Indices of the coordinates.
-};
-
 /// Slip force, the cone radius of the bristle times its stiffness, with its derivatives.
 struct Resistance::Slip {
   double force = 0.0;
@@ -108,10 +88,10 @@ template <class What>
 void Resistance::for_limits(What&& what) const {
   int memory = static_cast<int>(kNumbersOf<BristleMemory>);
   if (data_.slide) {
-    what(*data_.slide, true, memory);
+    if (!data_.slide->by_rows) what(*data_.slide, true, memory);
     memory += static_cast<int>(kNumbersOf<StopMemory>);
   }
-  if (data_.turn) what(*data_.turn, false, memory);
+  if (data_.turn && !data_.turn->by_rows) what(*data_.turn, false, memory);
 }
 
 Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, const Coordinate& c,
@@ -338,6 +318,11 @@ void Resistance::add(const View& v, PairTerms& t) const {
     c.D_a += force.slope * c.by_a;
     c.D_b += force.slope * c.by_b;
   });
+  if (step.context.dt == 0.0)  // an instant: as left by the last step
+    for_ends([&](const JointLimits& limits, bool slides, double sign, double, int entry) {
+      const double force = sign * read_record<UnilateralMemory>(v.memory + entry).force;
+      m.of[slides ? m.slide : m.turn].force += (slides ? 1.0 : limits.radius) * force;
+    });
   for (int i = 0; i < m.count; ++i) {
     const Coordinate& c = m.of[i];
     t.wrench_a += c.force * c.on_a;
@@ -461,6 +446,10 @@ ResistanceReport Resistance::report(const View& v) const {
   for_limits([&](const JointLimits& limits, bool slides, int memory) {
     const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], memory);
     (slides ? r.slide : r.turn) = stop.sign() * stop.law().force(stop.gap_n1());
+  });
+  for_ends([&](const JointLimits& limits, bool slides, double sign, double, int entry) {
+    const double force = sign * read_record<UnilateralMemory>(v.memory + entry).force;
+    (slides ? r.slide : r.turn) += (slides ? 1.0 : limits.radius) * force;
   });
   return r;
 }

@@ -11,6 +11,7 @@
 #include <polhode/joints/stop.hpp>
 #include <polhode/system/free_coordinate.hpp>
 #include <polhode/system/pair_terms.hpp>
+#include <polhode/system/unilateral_row.hpp>
 
 namespace polhode {
 
@@ -28,7 +29,7 @@ struct JointFriction {
   double damping = 0.0;    ///< Of the sticking bristle [N s/m], [N m s/rad].
 };
 
-/// Stops of one free coordinate: barriers at both limits, with restitution.
+/// Stops of one free coordinate: barriers at both limits, or rows that only push; with restitution.
 struct JointLimits {
   double lower = -std::numeric_limits<double>::infinity();  ///< [m] or [rad]
   double upper = std::numeric_limits<double>::infinity();
@@ -36,6 +37,8 @@ struct JointLimits {
   double restitution = 0.0;  ///< Ratio of the speeds after and before an impact [-].
   /// Effective inertia in impacts [kg] or [kg m²]; 0: the law's stiffness is used.
   double inertia = 0.0;
+  bool by_rows = false;  ///< Rows of the step instead of the law.
+  double radius = 1.0;   ///< Of an angle: its gaps are lengths there [m].
 
   [[nodiscard]] bool within(double x) const { return x >= lower && x <= upper; }
 };
@@ -85,12 +88,24 @@ class Resistance {
   Resistance(Kind kind, const JointResistance& data) : kind_(kind), data_(data) {}
 
   [[nodiscard]] const JointResistance& data() const { return data_; }
-  [[nodiscard]] bool has_limits() const { return data_.slide || data_.turn; }
-  /// Numbers of `memory` below: a BristleMemory and a StopMemory for each coordinate with stops.
-  [[nodiscard]] int memory_size() const {
+  /// Whether it has stops that are barriers.
+  [[nodiscard]] bool has_barrier() const {
+    return (data_.slide && !data_.slide->by_rows) || (data_.turn && !data_.turn->by_rows);
+  }
+  /// Whether it exerts forces besides stops that are rows.
+  [[nodiscard]] bool has_forces() const { return data_.friction || has_barrier(); }
+  /// Number of stops that are rows: ends of coordinates.
+  [[nodiscard]] int rows() const;
+  /// Entry of the memory with the UnilateralMemory of the first of them.
+  [[nodiscard]] int row_entry() const {
     return static_cast<int>(kNumbersOf<BristleMemory> +
                             kNumbersOf<StopMemory> *
                                 ((data_.slide ? 1U : 0U) + (data_.turn ? 1U : 0U)));
+  }
+  /// Numbers of `memory` below: a BristleMemory, a StopMemory for each coordinate with stops, and
+  /// the records of stops that are rows.
+  [[nodiscard]] int memory_size() const {
+    return row_entry() + rows() * static_cast<int>(kNumbersOf<UnilateralMemory>);
   }
 
   /// Data of the joint in a step for all functions.
@@ -112,6 +127,10 @@ class Resistance {
   [[nodiscard]] double clearance(const View& view) const;
   /// Appends velocity jumps at the end of this step.
   void impacts(const View& view, std::vector<Impact>& list) const;
+  void unilateral_rows(const View& view, std::vector<UnilateralRow>& list) const;
+  /// Adds the wrenches of stops that are rows, by the forces in their records.
+  /// @param memory  Of the step whose forces these are.
+  void add_stops(const View& view, const double* memory, Vec6& on_a, Vec6& on_b) const;
   [[nodiscard]] ResistanceReport report(const View& view) const;
 
  private:
@@ -129,9 +148,13 @@ class Resistance {
   }
   [[nodiscard]] Slip slip(const View& view, int cone) const;
   [[nodiscard]] Bristle bristle(const View& view, const Motion& m) const;
-  /// Calls what(limits, whether of the slide, its memory).
+  /// Calls what(limits, whether of the slide, its memory) for stops that are barriers.
   template <class What>
   void for_limits(What&& what) const;
+  /// Calls what(limits, whether of the slide, +1 for the lower end, limit, its record's entry) for
+  /// stops that are rows.
+  template <class What>
+  void for_ends(What&& what) const;
   /// Active stop of a coordinate in the step.
   [[nodiscard]] Stop stop_of(const View& view, const JointLimits& limits, bool slides,
                              const Coordinate& c, int memory) const;

@@ -4,9 +4,9 @@
 #include <polhode/dynamics/extrapolation.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
-#include <polhode/engines/rigid_contacts.hpp>
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/engines/tree_engine.hpp>
+#include <polhode/engines/unilateral_rows.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
@@ -147,7 +147,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' does not support contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
-    if (a.solver == "automatic" && !RigidContacts::of(system) && rate == MomentumRate::momentum &&
+    if (a.solver == "automatic" && !UnilateralRows::of(system) && rate == MomentumRate::momentum &&
         a.rho_inf == 1.0 && ContactCgEngine::suits(system) &&
         ContactCgEngine::free_bodies(system) >= kManyBodies) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
@@ -156,6 +156,10 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
           system, a.newton_tolerance > 0.0 ? a.newton_tolerance : ContactCgEngine::kResidual);
     }
   }
+  const bool rows = UnilateralRows::of(system);
+  if (rows && a.solver == "tree")
+    throw InputError("analysis.solver", "'tree' does not support stops with the law rigid",
+                     "Use solver: automatic, block_lu, klu or sparse_lu");
   const bool solids = !system.nodes().empty();
   if (solids && a.solver == "tree")
     throw InputError("analysis.solver",
@@ -168,7 +172,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
       policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
           ? NodeFactor::every_iteration
           : NodeFactor::automatic;
-  if (solids || system.contacts() || given)
+  if (solids || system.contacts() || rows || given)
     return std::make_unique<SparseEngine>(system, solver, rate, factor);
   if (!tree_fits) {
     narration += "Solver: block LU, as 'tree' does not support this momentum_rate or jacobian.\n";
@@ -220,7 +224,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.newton.jacobian = policy;
   c.newton.line_search = a.line_search;
   c.newton.max_rotation = a.max_step_rotation;
-  if (system.contacts()) {
+  if (system.contacts() || UnilateralRows::of(system)) {
     if (a.newton_tolerance <= 0.0) c.newton.tolerance = kToleranceContact;
     c.newton.max_iterations = a.max_iterations.value_or(kIterationsContact);
     if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;

@@ -369,17 +369,20 @@ struct Simulation::Impl {
   /// @eq{velocity-noise}
   [[nodiscard]] double rounding_of_velocities() const;
 
-  /// Rejects a joint that starts beyond its stops by more than their band.
+  /// Rejects a joint that starts beyond its stops by more than their band, or their accuracy.
   void refuse_outside_limits(std::size_t index) const {
     const Joint& joint = joint_at(system, map.joint[index]);
-    if (!joint.has_barrier()) return;
+    if (!joint.has_barrier() && joint.unilateral() == 0) return;
     const PairView view = system.instant(state, system.interactions()[map.joint[index]], nullptr);
     const JointCoordinates c = joint.coordinates(view.step());
     const std::vector<std::string> names = joint.coordinate_names();
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto& limits =
           names[k][0] != 'r' ? joint.resistance()->data().slide : joint.resistance()->data().turn;
-      const double play = limits ? limits->law.tolerance : 0.0;
+      const double play = !limits ? 0.0
+                          : !limits->by_rows
+                              ? limits->law.tolerance
+                              : kOverlapGaps * system.touching_gap() / limits->radius;
       if (!limits || (c.value[k] >= limits->lower - play && c.value[k] <= limits->upper + play))
         continue;
       throw InputError(format("joints.{}", joint.name),

@@ -92,7 +92,7 @@ void require_smooth(const Model& model, const System& system, int order) {
   for (const CableLineSpec& cable : model.cables) check_cable(cable);
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
-    if (traits.set_valued || traits.has_barrier || traits.compliant)
+    if (traits.set_valued || traits.has_barrier || traits.compliant || traits.unilateral > 0)
       refuse(format("the {} '{}'", system.group(ref.group).kind(), system.name(ref)),
              "is not smooth", kOrderTwo);
   }

@@ -129,7 +129,7 @@ std::string limit_text(const System& system, const State& state, const std::stri
 std::string locking_joint(const System& system) {
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
-    if (traits.rows > 0 && traits.works && !traits.prescribes)
+    if (traits.rows > 0 && (traits.works || traits.unilateral > 0) && !traits.prescribes)
       return format("friction or a stop that locks {} '{}', ", system.group(ref.group).kind(),
                     traits.name);
   }

@@ -54,6 +54,7 @@ ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
 void ImpactResolver::find(const State& state, const Trial& trial) {
   rows_.clear();
   stops_.clear();
+  row_memories_.clear();
   surfaces_.clear();
   contacts_ = nullptr;
   dt_ = trial.context.dt;
@@ -79,6 +80,7 @@ void ImpactResolver::find(const State& state, const Trial& trial) {
     for (const Impact& impact : impacts) rows_.push_back({{ref.a, ref.b}, impact, {}});
     stops_.resize(rows_.size(), i);
   }
+  find_unilateral(state, trial);
   of_joints_ = before_contacts_ = rows_.size();
 }
 
@@ -131,6 +133,7 @@ Work ImpactResolver::settle(State& state) {
   tell_surfaces(state);
   const Work work = turn_surfaces(state);
   if (!contacts_) {
+    close_unilateral(state);
     record(state, before, nodes_before);
     return work;
   }
@@ -143,6 +146,7 @@ Work ImpactResolver::settle(State& state) {
   std::vector<ResolvedImpact> of_contacts;
   for (int k : numbers_) of_contacts.push_back(k < 0 ? ResolvedImpact{} : settled_[k]);
   contacts_->settled(state, of_contacts);
+  close_unilateral(state);
   record(state, before, nodes_before);
   return work;
 }
@@ -228,10 +232,11 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
   for (std::size_t i = 0; i < pressed.size(); ++i)
     find_held(held[i], velocities(state, pressed[i]));
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Island& island = all[i];
+    Island& island = all[i];
     if (island.tied && system_->rows() > 0) {
       std::vector<Vec6> jumps;
       for (int body : island.bodies) jumps.push_back(to_admissible[body]);
+      if (has_step_rows(island)) island.projected = energy_of(state, island, jumps);
       jump(state, island, jumps);
     }
     settle(state, island, std::move(rows[i]));

@@ -20,13 +20,17 @@ class ImpactResolver {
   explicit ImpactResolver(const System& system);
 
   /// Collects the impacts of interactions and of surfaces in an accepted step; state and histories
-  /// are still at t_n. Earlier ones are dropped.
+  /// are still at t_n, but for the forces of rows that only push. Earlier ones are dropped.
   void find(const State& state, const Trial& trial);
   /// Completes those of surfaces when the state has moved to t_{n+1}. Before those of contacts.
   void find_turns(const State& state);
   /// Adds those of contacts when the state has moved to t_{n+1}.
   /// @returns the change of the energy stored by contacts, and their dissipation.
   Work find(State& state, BodyContacts& contacts);
+  /// Closes and opens the rows of the step, and drops them, if no velocity changes at any of them.
+  void leave_still(State& state);
+  /// Whether rows of interactions that only push touched in the step.
+  [[nodiscard]] bool touched() const { return !row_memories_.empty(); }
   [[nodiscard]] bool any() const;
   /// Changes the velocities of the state, which has moved to t_{n+1}.
   /// @returns the change of the energy stored by surfaces, and their dissipation.
@@ -43,6 +47,7 @@ class ImpactResolver {
     std::vector<int> rows, bodies;
     std::vector<int> nodes;  ///< Loaded free nodes, ascending.
     bool tied = false;       ///< Joints or solids couple its bodies.
+    double projected = 0.0;  ///< Energy of velocities that its joints do not admit [J].
   };
   /// A point of a surface with the group of elements it belongs to and its number there.
   struct Surface {
@@ -76,9 +81,16 @@ class ImpactResolver {
   /// Applies a part of the impulses of an island's rows, which change its velocities from these.
   void apply(State& state, const Island& island, const std::vector<Row>& rows,
              const std::vector<Vec6>& start, const std::vector<Vec6>& v, double part);
-  /// Whether some rows of the island are of contacts that were rows of the step.
+  /// Adds the rows of interactions that only push, as far as they touch or did.
+  void find_unilateral(const State& state, const Trial& trial);
+  /// Stores which of these are closed, and adds their impulses to their forces.
+  void close_unilateral(State& state) const;
+  /// Whether some rows of the island were rows of the step.
   [[nodiscard]] bool has_step_rows(const Island& island) const;
   void settle_step_rows(State& state, const Island& island, std::vector<Row> rows);
+  /// Kinetic energy of a change of an island's velocities [J].
+  [[nodiscard]] double energy_of(const State& state, const Island& island,
+                                 const std::vector<Vec6>& jumps) const;
   /// Resolves the islands that contain a row from that one on.
   void settle_from(State& state, std::size_t first);
   /// Adds rows for the resting contacts of bodies that jumped, as far as they are loaded by it.
@@ -127,6 +139,7 @@ class ImpactResolver {
   std::vector<PairImpact> resting_;      ///< Their resting contacts.
   std::vector<ResolvedImpact> settled_;  ///< Of the rows.
   std::vector<int> stops_;               ///< Interactions of the rows of joints.
+  std::vector<int> row_memories_;        ///< Entries of their records in State::history, if any.
   std::vector<Vec6> pressed_;            ///< By body: impulses of the rows.
   std::vector<double> pressed_nodes_;    ///< On free nodes, three each; empty: none.
   bool pulls_ = false;                   ///< Rows of tied bodies have been settled.

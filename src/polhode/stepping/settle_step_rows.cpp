@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Velocity problems of islands with contacts that were rows of the step.
+// Velocity problems of islands with contacts and stops that were rows of the step.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include <polhode/impulses/velocity_problem.hpp>
 #include <polhode/stepping/impact_rows.hpp>
+#include <polhode/system/history_record.hpp>
 
 namespace polhode {
 
@@ -17,23 +17,90 @@ constexpr double kVelocityRounding = 64.0 * std::numeric_limits<double>::epsilon
 
 }  // namespace
 
+/// Forces are those of the step, closed is that of t_n.
+void ImpactResolver::find_unilateral(const State& state, const Trial& trial) {
+  std::vector<UnilateralRow> found;
+  for (const int i : system_->unilateral()) {
+    const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(i)];
+    const PairView view = pair_view(*system_, state, trial, ref);
+    found.clear();
+    system_->group(ref.group).unilateral_rows(ref.item, view.step(), found);
+    int memory = ref.first_history + system_->traits(ref).unilateral_entry;
+    for (const UnilateralRow& row : found) {
+      const auto record = read_record<UnilateralMemory>(state.history.data() + memory);
+      const bool was_closed = record.closed != 0.0, touches = row.gap_n1 <= system_->touching_gap();
+      if (was_closed || touches) {
+        Impact impact;
+        impact.on_a = row.by_a;
+        impact.on_b = row.by_b;
+        impact.given = std::abs(trial.context.dt) * record.force;
+        PairImpact& made = rows_.emplace_back(PairImpact{{ref.a, ref.b}, impact, {}});
+        made.row = StepRow{.was_closed = was_closed,
+                           .touches = touches,
+                           .restitution = row.restitution,
+                           .absorbed = row.gap_n <= system_->touching_gap()
+                                           ? 0.0
+                                           : -record.force * change_of_gap(row, view.a, view.b)};
+        stops_.push_back(i);
+        row_memories_.push_back(memory);
+      }
+      memory += static_cast<int>(kNumbersOf<UnilateralMemory>);
+    }
+  }
+}
+
+void ImpactResolver::leave_still(State& state) {
+  if (system_->unilateral().empty()) return;
+  if (std::any_of(rows_.begin(), rows_.end(),
+                  [](const PairImpact& r) { return r.row && r.row->changes(); }))
+    return;
+  settled_.assign(rows_.size(), {});
+  close_unilateral(state);
+  rows_.clear();
+  of_joints_ = before_contacts_ = 0;
+}
+
+void ImpactResolver::close_unilateral(State& state) const {
+  for (std::size_t k = 0; k < row_memories_.size(); ++k) {
+    const StepRow& row = *rows_[k].row;
+    const ResolvedImpact& s = settled_[k];
+    double* const memory = state.history.data() + row_memories_[k];
+    auto record = read_record<UnilateralMemory>(memory);
+    record.force += s.normal / std::abs(dt_);
+    record.closed = (s.solved ? s.closed : row.was_closed && row.touches) ? 1.0 : 0.0;
+    write_record(record, memory);
+  }
+}
+
+double ImpactResolver::energy_of(const State& state, const Island& island,
+                                 const std::vector<Vec6>& jumps) const {
+  double sum = 0.0;
+  std::vector<Vec6> by_body(static_cast<std::size_t>(system_->body_count()), Vec6::Zero());
+  for (std::size_t i = 0; i < jumps.size(); ++i) {
+    const BodyData& data = system_->bodies()[static_cast<std::size_t>(island.bodies[i])];
+    const Vec3 W = system_->motion(state, island.bodies[i]).q.conjugate() * jumps[i].tail<3>();
+    sum += 0.5 * data.mass * jumps[i].head<3>().squaredNorm() + 0.5 * W.dot(data.inertia * W);
+    by_body[static_cast<std::size_t>(island.bodies[i])] = jumps[i];
+  }
+  const auto v = [&](int body) -> Vec3 {
+    if (body == kGround) return Vec3::Zero();
+    return by_body[static_cast<std::size_t>(body)].head<3>();
+  };
+  for (const InteractionRef& ref : system_->interactions())
+    if (const double mass = system_->traits(ref).coupled_mass; mass != 0.0)
+      sum -= 0.5 * mass * (v(ref.b) - v(ref.a)).squaredNorm();
+  return sum;
+}
+
 bool ImpactResolver::has_step_rows(const Island& island) const {
   return std::any_of(island.rows.begin(), island.rows.end(),
                      [&](int k) { return rows_[static_cast<std::size_t>(k)].row.has_value(); });
 }
 
-/// Rows of stops, which are forces of the step, follow after those of contacts.
 /// @eq{velocity-problem}
 void ImpactResolver::settle_step_rows(State& state, const Island& island, std::vector<Row> rows) {
   std::vector<Vec6> v = velocities(state, island);
   const std::vector<Vec6> start = v;
-  const auto of_stop = [&](const Row& row) {
-    return !rows_[static_cast<std::size_t>(row.impact)].row.has_value();
-  };
-  std::vector<Row> stops;
-  std::copy_if(rows.begin(), rows.end(), std::back_inserter(stops), of_stop);
-  std::erase_if(rows, of_stop);
-
   bool closes = false, stopped = false;
   double rounding = 0.0;
   VelocityProblem problem;
@@ -51,6 +118,7 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
       problem.A(i, j) = problem.A(j, i) = row.speed_by(rows[static_cast<std::size_t>(j)]);
   }
   problem.rounding = rounding;
+  problem.projected = island.projected;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
     const PairImpact& contact = rows_[static_cast<std::size_t>(row.impact)];
@@ -88,12 +156,6 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
     if (!result.report.converged && result.report.worst >= 0)
       note_error(rows[static_cast<std::size_t>(result.report.worst)].impact, result.report.error,
                  problem.w.lpNorm<Eigen::Infinity>());
-  }
-  if (!stops.empty()) {
-    for (Row& row : stops) row.before = row.speed(v);
-    solve_rows(stops, v, Acts::all);
-    rows.insert(rows.end(), std::make_move_iterator(stops.begin()),
-                std::make_move_iterator(stops.end()));
   }
   apply(state, island, rows, start, v, 1.0);
 }

@@ -147,8 +147,8 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   }
 
   ledger_.before_commit(state, trial_);
-  impacts_.find(state, trial_);
   ledger_.add(state, engine_->commit(state, trial_));
+  impacts_.find(state, trial_);
   commit_histories(state, report.rotation);
   std::copy(trial_.lambda.begin(), trial_.lambda.end(), state.lambda.begin());
   const GeneralizedAlpha& ga = trial_.context.ga;
@@ -171,6 +171,8 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
     ledger_.add(state, impacts_.find(state, *contacts));
     state.past_count = 0;  // measured: steps then start best from the velocities at t_n
   }
+  if (predictor.remember) stopped_ = stopped_ || impacts_.touched();
+  impacts_.leave_still(state);
   jumped_ = impacts_.any();
   if (jumped_) {
     const BodySums before = ledger_.sums(state);

@@ -25,16 +25,18 @@ struct ImpactCourse {
   double fallen = 0.0;       ///< 2 a h by attracting forces after the bodies separated [m²/s²].
 };
 
-/// A contact that was a row of the step, for its velocity problem. @eq{velocity-problem}
+/// A contact or a stop that was a row of the step, for its velocity problem. @eq{velocity-problem}
 struct StepRow {
   bool was_closed = false;  ///< At t_n.
   bool stuck = false;       ///< Its slip was zero over the step, and before it.
   bool stops = false;       ///< Its slip was not zero before the step, but over it.
   bool touches = false;     ///< At t_{n+1}.
   double restitution = 0.0;
-  double absorbed = 0.0;  ///< Work of its normal impulse in the step [J].
+  double absorbed = 0.0;  ///< Work of its impulse in the step; 0 if it touched at t_n [J].
 
   [[nodiscard]] bool closes() const { return !was_closed && touches; }
+  /// Whether its velocity, or its slip, has to change.
+  [[nodiscard]] bool changes() const { return closes() || stops; }
 };
 
 /// An impact between two bodies, or of one on the ground.
@@ -43,7 +45,7 @@ struct PairImpact {
   Impact impact;
   std::optional<ImpactCourse> course;
   double slow = 0.0;  ///< Of resting contact: it reacts to faster approach only [m/s].
-  std::optional<StepRow> row = {};  ///< Of contacts that are rows.
+  std::optional<StepRow> row = {};  ///< Of contacts and stops that are rows.
 };
 
 /// Impulse of a resolved impact, with its losses.

@@ -68,6 +68,8 @@ class Group final : public InteractionGroup {
     t.impulse_sum = item.impulse_sum();
     t.work_entry = static_cast<short>(item.work_entry());
     t.impulse_entry = static_cast<short>(item.impulse_entry());
+    t.unilateral = static_cast<short>(item.unilateral());
+    t.unilateral_entry = static_cast<short>(item.unilateral_entry());
     t.coupled_mass = item.coupled_mass();
     t.reach = item.reach();
     t.time_order = item.time_order();
@@ -105,9 +107,6 @@ class Group final : public InteractionGroup {
   double clearance(int i, const PairStep& step) const override {
     return off(i, step.history) ? 1.0 : at(i).clearance(step);
   }
-  void impacts(int i, const PairStep& step, std::vector<Impact>& list) const override {
-    if (!off(i, step.history)) at(i).impacts(step, list);
-  }
   void initialize(int i, const PairStep& step, double* history) const override {
     at(i).initialize(step, history);
   }
@@ -137,6 +136,14 @@ class Group final : public InteractionGroup {
       most = std::max(most, std::abs(terms.g[k]));
     }
     return most;
+  }
+
+ protected:
+  void one_sided(int i, const PairStep& step, std::vector<Impact>* jumps,
+                 std::vector<UnilateralRow>* rows) const override {
+    if (off(i, step.history)) return;
+    if (jumps) at(i).impacts(step, *jumps);
+    if (rows) at(i).unilateral_rows(step, *rows);
   }
 
  private:

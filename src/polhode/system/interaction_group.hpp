@@ -9,6 +9,7 @@
 #include <polhode/core/time_function.hpp>
 #include <polhode/system/motion_basis.hpp>
 #include <polhode/system/pair_terms.hpp>
+#include <polhode/system/unilateral_row.hpp>
 
 namespace polhode {
 
@@ -30,8 +31,9 @@ struct InteractionTraits {
   bool row_goes_on = false;  ///< The next item is a further part of its only row.
   ImpulseSum impulse_sum = ImpulseSum::none;
   short work_entry = -1, impulse_entry = -1;  ///< In the history; −1: none.
-  double coupled_mass = 0.0;                  ///< [kg]
-  double reach = 0.0;                         ///< [m]
+  short unilateral = 0, unilateral_entry = -1;
+  double coupled_mass = 0.0;  ///< [kg]
+  double reach = 0.0;         ///< [m]
   int time_order = 2;
   const char* refusal = "";
 };
@@ -91,12 +93,20 @@ class InteractionGroup {
   virtual void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
                            double* history) const = 0;
   [[nodiscard]] virtual double clearance(int i, const PairStep& step) const = 0;
-  virtual void impacts(int i, const PairStep& step, std::vector<Impact>& list) const = 0;
+  void impacts(int i, const PairStep& step, std::vector<Impact>& list) const {
+    one_sided(i, step, &list, nullptr);
+  }
+  void unilateral_rows(int i, const PairStep& step, std::vector<UnilateralRow>& list) const {
+    one_sided(i, step, nullptr, &list);
+  }
   /// Activates an item at an instant; its rows keep their present values.
   /// @returns the largest of these [m or -].
   virtual double switch_on(int i, const PairStep& step, double* history) const = 0;
 
  protected:
+  /// Appends velocity jumps, or rows that only push, to the list that is given.
+  virtual void one_sided(int i, const PairStep& step, std::vector<Impact>* jumps,
+                         std::vector<UnilateralRow>* rows) const = 0;
   InteractionGroup(std::string kind, const char& type) : kind_(std::move(kind)), type_(&type) {}
   int size_ = 0;
 

@@ -9,6 +9,7 @@
 #include <polhode/core/time_function.hpp>
 #include <polhode/system/motion_basis.hpp>
 #include <polhode/system/pair_terms.hpp>
+#include <polhode/system/unilateral_row.hpp>
 
 namespace polhode {
 
@@ -72,6 +73,12 @@ struct InteractionItem {
   [[nodiscard]] double clearance(const PairStep&) const { return 1.0; }
   /// Appends velocity jumps at the end of the step, which is accepted but not yet committed.
   void impacts(const PairStep&, std::vector<Impact>& /*list*/) const {}
+  /// Number of its rows that only push, and the entry of the history with their records
+  /// (UnilateralMemory), which the engine and the impacts write.
+  [[nodiscard]] int unilateral() const { return 0; }
+  [[nodiscard]] int unilateral_entry() const { return -1; }
+  /// Appends these rows, all of them.
+  void unilateral_rows(const PairStep&, std::vector<UnilateralRow>& /*list*/) const {}
   void initialize(const PairStep&, double* /*history*/) const {}  ///< History at the start.
   void commit(const PairStep&, double* /*history*/) const {}      ///< History at t_{n+1}.
   /// Whether the accepted configuration still has the assembled orientation, no mirror image.
@@ -158,6 +165,15 @@ struct OwnFunctions {
   static constexpr bool impacts = !requires {
     requires std::same_as<decltype(&Item::impacts), decltype(&Base::impacts)>;
   };
+  static constexpr bool unilateral = !requires {
+    requires std::same_as<decltype(&Item::unilateral), decltype(&Base::unilateral)>;
+  };
+  static constexpr bool unilateral_entry = !requires {
+    requires std::same_as<decltype(&Item::unilateral_entry), decltype(&Base::unilateral_entry)>;
+  };
+  static constexpr bool unilateral_rows = !requires {
+    requires std::same_as<decltype(&Item::unilateral_rows), decltype(&Base::unilateral_rows)>;
+  };
   static constexpr bool acceptable = !requires {
     requires std::same_as<decltype(&Item::acceptable), decltype(&Base::acceptable)>;
   };
@@ -179,7 +195,7 @@ struct OwnFunctions {
 template <class Item>
 concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
     requires(const Item item, const PairStep& step, PairTerms& terms, Vec6& gamma, double* history,
-             std::vector<Impact>& impacts, PrescribedRows& rows) {
+             std::vector<Impact>& impacts, PrescribedRows& rows, std::vector<UnilateralRow>& ends) {
   { Item::kKind } -> std::convertible_to<const char*>;
   { item.evaluate(step, terms) } -> std::same_as<void>;
   { item.rows() } -> std::same_as<int>;
@@ -193,6 +209,7 @@ concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
   { item.prescribed(step, TimeSide::kBefore, rows) } -> std::same_as<void>;
   { item.impacts(step, impacts) } -> std::same_as<void>;
   { item.clearance(step) } -> std::same_as<double>;
+  { item.unilateral_rows(step, ends) } -> std::same_as<void>;
   { item.acceptable(step) } -> std::same_as<bool>;
   { item.motion_basis() } -> std::same_as<std::optional<MotionBasis>>;
 };
@@ -224,6 +241,9 @@ concept Interaction = HasInteractionFunctions<Item> &&
                       (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
                       (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance) &&
                       (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::impacts) &&
+                      // Rows that only push need records.
+                      (OwnFunctions<Item>::unilateral == OwnFunctions<Item>::unilateral_rows) &&
+                      (OwnFunctions<Item>::unilateral == OwnFunctions<Item>::unilateral_entry) &&
                       (!(OwnFunctions<Item>::always_queried || OwnFunctions<Item>::refusal) ||
                        OwnFunctions<Item>::acceptable) &&
                       OwnFunctions<Item>::reverse == OwnFunctions<Item>::reversible;

@@ -53,12 +53,14 @@ void System::finish() {
       const auto basis = groups_[g]->describe(i).motion_basis;
       const int index = static_cast<int>(refs_.size());
       if (traits.has_barrier) barriers_.push_back(index);
+      if (traits.unilateral > 0) unilateral_.push_back(index);
       if (traits.prescribes) drives_.push_back(index);
       // Forces of set-valued laws are unknowns of their own, not functions of tiny displacements.
       stiff_ = stiff_ || (traits.rows > 0 && traits.works && !traits.set_valued);
       set_valued_ = set_valued_ || traits.set_valued;
       only_constraints_ = only_constraints_ && traits.rows > 0 && !traits.works &&
-                          !traits.dissipates && !traits.compliant && !traits.has_barrier;
+                          !traits.dissipates && !traits.compliant && !traits.has_barrier &&
+                          traits.unilateral == 0;
       if (basis) candidates.push_back({a, b, index, traits.reversible});
       shapes.push_back(shape_code(basis));
       InteractionRef ref{g, i, a, b, traits.rows, rows_, histories, index};

@@ -114,6 +114,10 @@ class System {
   [[nodiscard]] bool only_constraints() const { return only_constraints_; }
   /// Interactions with an inadmissible configuration.
   [[nodiscard]] const std::vector<int>& barriers() const { return barriers_; }
+  /// Interactions with rows that only push.
+  [[nodiscard]] const std::vector<int>& unilateral() const { return unilateral_; }
+  /// Gap up to which such rows, and rigid surfaces, touch [m].
+  [[nodiscard]] double touching_gap() const { return kTouchingGap * length_; }
   /// Interactions with rows that follow functions of time.
   [[nodiscard]] const std::vector<int>& drives() const { return drives_; }
   [[nodiscard]] const SpanningTree& tree() const { return tree_; }
@@ -160,7 +164,7 @@ class System {
   double mean_mass_ = 1.0, length_ = 1.0;
   bool conservative_ = true, dissipates_ = false, stiff_ = false, only_constraints_ = true;
   bool set_valued_ = false;
-  std::vector<int> barriers_, drives_;
+  std::vector<int> barriers_, unilateral_, drives_;
   int memory_size_ = 0;
   bool finished_ = false;
 };

@@ -11,22 +11,24 @@
 #include <polhode/linear/kkt.hpp>
 #include <polhode/system/body_contacts.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
+#include <polhode/system/unilateral_row.hpp>
 
 namespace polhode {
 
-/// Contacts of rigid shapes as unilateral rows of a step, for Newton engines with a matrix.
+/// Unilateral rows of a step, for Newton engines with a matrix: contacts of rigid shapes, and the
+/// rows of interactions that only push, such as stops of joints.
 ///
 /// A row has a non-negative impulse p with p g_{n+1} = 0 and g_{n+1} ≥ 0, like a joint that only
-/// pushes. Rows whose gap is zero at t_n have Coulomb friction against the slip of the step, so
+/// pushes. Contacts whose gap is zero at t_n have Coulomb friction against the slip of the step, so
 /// that a point that sticks does not move at all. In each iteration the smooth equations are solved
 /// first, then with the response of the bodies to each row the row problem exactly. Friction of
 /// rows that close, and restitution, belong to the velocity problem at the end of the step.
 /// @eq{contact-rows}
-class RigidContacts {
+class UnilateralRows {
  public:
-  /// Whether the contacts of a system are such rows.
+  /// Whether a system has such rows.
   [[nodiscard]] static bool of(const System& system);
-  explicit RigidContacts(const System& system);
+  explicit UnilateralRows(const System& system);
 
   void begin_step(const State& state, const Trial& trial);
   /// Adds the effect of the rows to increments.
@@ -50,14 +52,38 @@ class RigidContacts {
   struct Row {
     int a = kGround, b = kGround;
     Vec6 on_a, on_b;
-    Vec6 by_a, by_b;  ///< Derivative of the gap, or of the slip, at t_{n+1}.
-    int point = 0;
-    Vec3 direction;      ///< Of the impulse, or the axis of a turning row.
-    bool turns = false;  ///< An angular impulse.
+    Vec6 by_a, by_b;                ///< Derivative of the gap, or of the slip, at t_{n+1}.
+    int source = 0;                 ///< A point or, numbered after all points, a stop.
+    double way = 0.0;               ///< Gap at t_{n+1}, or slip over the step.
+    Vec3 direction = Vec3::Zero();  ///< Of a point's impulse, or the axis of a turning row.
+    bool turns = false;             ///< An angular impulse.
+  };
+  /// A unilateral row of an interaction in this step.
+  struct Stop {
+    int interaction = 0, a = kGround, b = kGround;
+    int memory = 0;       ///< Entry of its record in State::history.
+    int number = 0;       ///< Among the rows of its interaction.
+    bool exists = false;  ///< Not that of an interaction that is off.
+    bool listed = false;  ///< It is a row since an earlier iteration.
+    double impulse = 0.0;
+    UnilateralRow row;
   };
   void take_steps(const State& state, const Trial& trial);
-  void find(const StepContext& context);
+  void take_stops(const State& state, const Trial& trial);
+  void find(const StepContext& context, const Vec& x);
   void put_rows();
+  void put_point(int number);
+  [[nodiscard]] bool is_point(const Row& row) const {
+    return row.source < static_cast<int>(points_.size());
+  }
+  [[nodiscard]] const Stop& stop_of(const Row& row) const {
+    return stops_[static_cast<std::size_t>(row.source) - points_.size()];
+  }
+  /// Impulse of the iteration before.
+  [[nodiscard]] double given(const Row& row) const;
+  /// Largest distance from the origin of what a row acts on [m], and speed there [m/s].
+  void add_scales(const Row& row, double& far, double& fastest) const;
+  void take_impulses(const Vec& sums);
   [[nodiscard]] std::vector<std::vector<Eigen::Index>> islands(const Mat& A) const;
   void take_blocks(const std::vector<Eigen::Index>& island, RowProblem& problem) const;
   [[nodiscard]] bool rests(const ImpulsePoint& p) const { return p.gap <= touching_; }
@@ -70,15 +96,20 @@ class RigidContacts {
   [[nodiscard]] Vec3 slip_of(const ImpulsePoint& p) const;
   [[nodiscard]] std::string broken() const;
   [[nodiscard]] std::string names_of(int a, int b) const;
+  /// "the contact of body 'a' and the ground", "the stop of joint 'knee'".
+  [[nodiscard]] std::string name_of(const Row& row) const;
+  [[nodiscard]] std::string name_of(const Stop& stop) const;
 
   const System* system_;
-  BodyContacts* contacts_;
-  ImpulsiveContacts* impulsive_;
-  double touching_;              ///< Gap below which surfaces touch [m].
-  std::vector<BodyStep> steps_;  ///< By body, the ground last.
+  BodyContacts* contacts_ = nullptr;        ///< Null: none.
+  ImpulsiveContacts* impulsive_ = nullptr;  ///< Likewise.
+  double touching_;                         ///< Gap below which surfaces touch [m].
+  std::vector<BodyStep> steps_;             ///< By body, the ground last.
   std::vector<Vec6> nowhere_;
   std::vector<ImpulsePoint> points_;
   std::vector<ImpulseLoss> losses_;
+  std::vector<Stop> stops_;           ///< Of all interactions.
+  std::vector<UnilateralRow> found_;  ///< Of one interaction.
   std::vector<Row> rows_;
   std::vector<ImpulseRows> blocks_;
   std::vector<double> lengths_;
