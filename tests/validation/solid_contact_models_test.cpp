@@ -136,7 +136,8 @@ output: {{hdf5: false}}
 /// St Venant's bars: a wave of the force ρ c A v/2 runs to both free ends and back. Equal bars
 /// separate after 2L/c with exchanged velocities; a bar half as long stops the motion in half the
 /// time with all of its momentum (Goldsmith, Impact, 1960, section 3.2). None of this depends on
-/// the restitution. Errors are smaller with finer meshes.
+/// the restitution. Errors are smaller with finer meshes. Points under the border of the other bar
+/// used to slip off it (6 of 18), which made the impulse larger by 8e-4.
 TEST(SolidContactModel, ElasticBarsExchangeTheirVelocities) {
   const double period = 0.2;  // 2L/c
   for (const int restitution : {0, 1}) {
@@ -147,7 +148,7 @@ TEST(SolidContactModel, ElasticBarsExchangeTheirVelocities) {
     }
     EXPECT_NEAR(blow_of_bars(0.5, 20, "1 ms", restitution).impulse, 0.5, 0.015) << restitution;
     const double coarse = blow_of_bars(1.0, 10, "1 ms", restitution).impulse;
-    const double fine = blow_of_bars(1.0, 40, "1 ms", restitution).impulse;
+    const double fine = blow_of_bars(1.0, 50, "1 ms", restitution).impulse;
     EXPECT_NEAR(fine, 1.0, 0.01) << restitution;
     EXPECT_LT(std::abs(fine - 1.0), 0.5 * std::abs(coarse - 1.0)) << restitution;
   }

@@ -48,9 +48,6 @@ class StaticNewton {
   /// factor of the loads at its start.
   StaticStep solve(State& state, double load_factor, const State* start = nullptr);
 
-  /// Whether surfaces of solids or cables may touch each other.
-  [[nodiscard]] bool has_meetings() const { return !meetings_.empty(); }
-
   /// Solves by relaxation: the state moves downhill in small steps, also with slack or yielding
   /// parts, until Newton's method finds a nearby equilibrium. Derivation: @eq{statics-relaxation}
   /// @param slack  Parts may fall before they carry load. Otherwise the search ends where a motion

@@ -32,8 +32,6 @@ constexpr double kReachesLimit = 0.01;
 /// Distance of a load step, relative to the expected one, above which it may have left its branch,
 /// as after many iterations; and distance below which this is not checked [-].
 constexpr double kFar = 3.0, kNear = 0.02;
-/// Part of the longest load step up to which one that loses stability is halved.
-constexpr double kLeastDivided = 1.0 / 32.0;
 /// Kind of interactions that are loads, whose potential is no strain energy.
 constexpr const char* kForceKind = "force";
 constexpr const char* kCableKind = "cable";
@@ -226,15 +224,6 @@ struct LoadStepper::Impl {
     return true;
   }
 
-  /// Whether an equilibrium that is less stable than the last one may have been reached only
-  /// because the load step is long. Where a point slips off the border of a surface, there is an
-  /// unstable equilibrium on it, of the size of the contact's band. Newton's method may end in it
-  /// from afar; the path of short steps does not lead there.
-  [[nodiscard]] bool divides(const StaticStep& step, double way) const {
-    return step.converged && newton.has_meetings() && step.unstable > std::max(unstable, 0) &&
-           way > kLeastDivided * longest();
-  }
-
   bool advance(State& state, double limit) {
     const double from = state.t, first = increment;
     for (;;) {
@@ -258,14 +247,6 @@ struct LoadStepper::Impl {
           if (step.converged) ++report.relaxations;
         }
         if (!step.increments.empty()) expected = std::max(expected, step.increments.front());
-      }
-      if (divides(step, factor - from)) {
-        step.converged = false;
-        step.reason = "is less stable than the last equilibrium";
-        take(std::move(step));
-        state = std::move(old);
-        increment = 0.5 * (factor - from);
-        continue;
       }
       take(step);
       if (step.converged) {

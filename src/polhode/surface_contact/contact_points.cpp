@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quadrature points of the contact potential between two meshes.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <span>
 
 #include <polhode/solids/mesh/shapes.hpp>
+#include <polhode/surface_contact/edge_lines.hpp>
 #include <polhode/surface_contact/mesh_surface.hpp>
 #include <polhode/surface_contact/surface_points.hpp>
 
@@ -28,6 +30,8 @@ constexpr double kNothing = 1e-12;
 constexpr double kCovered = 1e-9;
 /// Weights at the corners and in the middle of a triangle: exact for quadratic functions.
 constexpr double kAtCorner = 1.0 / 12.0, kInMiddle = 0.75;
+/// Weight halfway between the corners and the middle of a triangle: likewise exact.
+constexpr double kHalfway = 1.0 / 3.0;
 
 double cross(const Point2& a, const Point2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -35,6 +39,11 @@ double area(const Polygon& p) {
   double sum = 0.0;
   for (std::size_t k = 0; k + 2 < p.size(); ++k) sum += cross(p[k + 1] - p[0], p[k + 2] - p[0]);
   return 0.5 * sum;
+}
+
+double distance_to_segment(const Point2& p, const Point2& a, const Point2& b) {
+  const double part = (p - a).dot(b - a) / (b - a).squaredNorm();
+  return (p - a - std::clamp(part, 0.0, 1.0) * (b - a)).norm();
 }
 
 /// Part of a convex polygon left of the line from a to b (Sutherland and Hodgman 1974).
@@ -114,6 +123,11 @@ class PointMaker {
     std::vector<double> x;
     for (const Vec3& node : X) x.insert(x.end(), node.begin(), node.end());
     for (const MeshPoint& v : other->vertices) vertices_.push_back(v.at(x.data()));
+    const EdgeLines lines = sharp_edges(*other, X);
+    const auto end = [&](int v) {
+      return lines.vertices[static_cast<std::size_t>(v)].at(x.data());
+    };
+    for (const auto& edge : lines.edges) borders_.push_back({end(edge[0]), end(edge[1])});
   }
 
   void add(const std::string& where, const solids::LoadedFaces& block) {
@@ -157,7 +171,35 @@ class PointMaker {
     }
   }
 
-  /// The overlaps of a face with the triangles opposite to it.
+  /// Points inside of an overlap: of a triangle, or of those of a polygon with its middle.
+  template <class Add>
+  static void add_inside(const Polygon& cell, double least, Add&& add) {
+    const auto of_triangle = [&](const Point2& a, const Point2& b, const Point2& c) {
+      const double A = 0.5 * cross(b - a, c - a);
+      if (!(A > least)) return;
+      const Point2 middle = (a + b + c) / 3.0;
+      for (const Point2& p : {a, b, c}) add(0.5 * (p + middle), kHalfway * A);
+    };
+    if (cell.size() == 3) return of_triangle(cell[0], cell[1], cell[2]);
+    Point2 middle = Point2::Zero();
+    for (const Point2& p : cell) middle += p / static_cast<double>(cell.size());
+    for (std::size_t k = 0; k < cell.size(); ++k)
+      of_triangle(cell[k], cell[(k + 1) % cell.size()], middle);
+  }
+
+  /// Sharp edges and borders of the other surface, in the plane of a face that they lie opposite
+  /// to.
+  [[nodiscard]] std::vector<std::array<Point2, 2>> borders(const FlatFace& face) const {
+    std::vector<std::array<Point2, 2>> flat;
+    for (const auto& [a, b] : borders_)
+      if (std::max(std::abs(face.height(a)), std::abs(face.height(b))) <= kNear * face.size)
+        flat.push_back({face.flat(a), face.flat(b)});
+    return flat;
+  }
+
+  /// The overlaps of a face with the triangles opposite to it. A point exactly over the border of
+  /// the other surface would have two ways, below it and beside it, and two stable equilibria.
+  /// There all points are inside of the overlap, at the same places whatever corner is the first.
   void cut(const FlatFace& face, std::span<const int> own) {
     const double least = kNothing * std::abs(area(face.outline));
     std::vector<std::pair<Point2, double>> at;  // points of this face and their areas
@@ -168,6 +210,12 @@ class PointMaker {
           return;
         }
       at.emplace_back(p, share);
+    };
+    const std::vector<std::array<Point2, 2>> borders = this->borders(face);
+    const auto on_border = [&](const Point2& p) {
+      return std::any_of(borders.begin(), borders.end(), [&](const auto& edge) {
+        return distance_to_segment(p, edge[0], edge[1]) < kFlat * face.size;
+      });
     };
     for (const auto& t : other_->triangles) {
       const auto corner = [&](int k) -> const Vec3& {
@@ -182,6 +230,10 @@ class PointMaker {
       for (int k = 3; k > 0 && !cell.empty(); --k)
         cell = left_of(cell, face.flat(corner(k % 3)), face.flat(corner(k - 1)));
       if (cell.size() < 3 || !(area(cell) > least)) continue;
+      if (std::any_of(cell.begin(), cell.end(), on_border)) {
+        add_inside(cell, least, add);
+        continue;
+      }
       for (std::size_t k = 1; k + 1 < cell.size(); ++k) {
         const double A = 0.5 * cross(cell[k] - cell[0], cell[k + 1] - cell[0]);
         if (!(A > least)) continue;
@@ -205,6 +257,7 @@ class PointMaker {
   const std::vector<Vec3>& X_;
   const MeshSurface* other_;
   std::vector<Vec3> vertices_;
+  std::vector<std::array<Vec3, 2>> borders_;
   std::vector<MeshPoint> points_;
   std::vector<double> covered_;  ///< By node of a face: its share of the covered area.
   std::map<int, double> nodal_;  ///< Remaining area by node.

@@ -51,7 +51,8 @@ struct MeshSurface {
 /// Where a flat face is at the start opposite to triangles of `other`, parallel to them and at most
 /// a tenth of its own size away, the overlap of the two is used instead. Each triangle of the
 /// overlap has points at its corners and in its middle (weights 1/12 and 3/4, exact for quadratic
-/// functions): a uniform pressure then loads both meshes exactly, whatever their sizes.
+/// functions), or inside of it where the overlap reaches a border of `other`: a uniform pressure
+/// then loads both meshes exactly, whatever their sizes.
 /// @param X  Positions at the start by number [m].
 [[nodiscard]] std::vector<MeshPoint> contact_points(const std::string& where,
                                                     const std::vector<solids::LoadedFaces>& faces,
