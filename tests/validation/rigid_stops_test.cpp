@@ -132,8 +132,12 @@ TEST(RigidStops, AFreeElbowKeepsItsMomenta) {
       const double E = s.balance().kinetic;
       closed(s);
       EXPECT_LE(s.balance().kinetic, E * (1.0 + 2e-12)) << h;
-      if (e == 1.0) EXPECT_NEAR(s.balance().kinetic, E, 2e-12 * E) << h;
-      if (e < 1.0) EXPECT_LT(s.balance().kinetic, 0.99 * E) << h;
+      if (e == 1.0) {
+        EXPECT_NEAR(s.balance().kinetic, E, 2e-12 * E) << h;
+      }
+      if (e < 1.0) {
+        EXPECT_LT(s.balance().kinetic, 0.99 * E) << h;
+      }
     }
 }
 
@@ -333,7 +337,9 @@ TEST(RigidStops, AChainKeepsItsEnergyAtItsStops) {
           EXPECT_LE(s.joint(k).coordinates[0], 0.15 + 1e-11);
         }
       }
-      if (e == 1.0) EXPECT_NEAR(energy(), start, 1e-11 * scale) << h;
+      if (e == 1.0) {
+        EXPECT_NEAR(energy(), start, 1e-11 * scale) << h;
+      }
     }
 }
 
@@ -365,7 +371,9 @@ TEST(RigidStops, AMotorPressesItsArmAgainstTheStop) {
                 0.6, h, "loads: {motor: {type: rotary_motor, joint: hinge, moment: 3}}"));
       closed(s);
       EXPECT_NEAR(s.joint(0).coordinates[0], 0.1, 1e-14) << h << " mu " << mu;
-      if (mu == 0.0) EXPECT_NEAR(s.joint(0).stops[0], -3.0, force_noise(h)) << h;
+      if (mu == 0.0) {
+        EXPECT_NEAR(s.joint(0).stops[0], -3.0, force_noise(h)) << h;
+      }
     }
 }
 
