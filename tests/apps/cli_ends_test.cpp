@@ -103,6 +103,19 @@ output:
   EXPECT_THAT(shown.out, AllOf(HasSubstr("load carried"), HasSubstr("stable")));
 }
 
+TEST_F(CommandLine, StopsInStaticsAtTheWallLimit) {
+  write("hung.yaml", R"(format: 1
+gravity: [0, 0, -10]
+bodies: {weight: {mass: 2, inertia: [1, 1, 1], position: [0, 0, -1]}}
+joints: {guide: {type: prismatic, bodies: [ground, weight], at: [0, 0, 0], axis: z}}
+loads: {spring: {type: translational_spring, joint: guide, stiffness: 400 N/m}}
+analysis: {type: statics, load_steps: 4}
+)");
+  const auto stopped = run({"run", "hung.yaml", "--wall-limit", "0", "--json"});
+  EXPECT_EQ(stopped.code, 75) << stopped.err;
+  EXPECT_EQ(run({"run", "hung.yaml", "--json"}).code, 0);
+}
+
 TEST_F(CommandLine, EndsWith4AndNamesAnUnsupportedBody) {
   write("stone.yaml", R"(format: 1
 gravity: [0, 0, -10]
