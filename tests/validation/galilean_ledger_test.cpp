@@ -167,6 +167,9 @@ joints:
                                 "angle: 2*t, stiffness: 50, damping: 2}}\n"},
       {"linear_servo", slides + "loads: {it: {type: linear_servo, joint: a, "
                                 "speed: 2*t, stiffness: 50, damping: 9}}\n"},
+      {"rotary_inerter",
+       hinges + "loads: {it: {type: rotary_inerter, joint: a, inertance: 0.4}}\n"},
+      {"linear_inerter", slides + "loads: {it: {type: linear_inerter, joint: a, inertance: 3}}\n"},
       {"gear", hinges + "loads: {it: {type: gear, joints: [a, b], ratio: -2}}\n"},
       {"coupling", hinges + "loads: {it: {type: coupling, joints: [a, b], factors: [-2]}}\n"},
       {"screw", slides + "loads: {it: {type: screw, joint: b, pitch: 50 mm}}\n"},

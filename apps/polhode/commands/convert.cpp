@@ -111,7 +111,7 @@ Action add_convert(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
   command
       .add_option("RESULTS", options->film.results,
-                  "Results (results.h5 or their folder), or a robot's file (.urdf, .xacro)")
+                  "Results (results.h5 or their folder), or a robot's file (.urdf, .xacro, .xml)")
       ->required();
   add_set_option(command, options->model);
   command

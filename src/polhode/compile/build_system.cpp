@@ -12,6 +12,7 @@
 #include <polhode/compile/build_system.hpp>
 #include <polhode/compile/centrifugal_forces.hpp>
 #include <polhode/compile/describe_load.hpp>
+#include <polhode/compile/inerter_mass.hpp>
 #include <polhode/compile/joint_resistance.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/core/error.hpp>
@@ -281,6 +282,7 @@ class Builder {
     }
     d.coupled = std::move(coupled);
     d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
+    if (kind.parts > 1) add_inerter_mass(load, model_, dummy_reach(), system_, d);
     if (load.of_motion.index() != 0) add_function(where, load, kind, d);
     kind.add(system_, d);
   }
@@ -434,7 +436,8 @@ class Builder {
     for (const LoadSpec& load : model_.loads) {
       std::size_t& item = next[load.type];
       map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(item));
-      item += 1 + load.others.size();  // parts of a row
+      item += static_cast<std::size_t>(load.solid >= 0 ? 1 : load_kind(load.type).parts) +
+              load.others.size();
     }
     const auto take = [&](const std::string& kind, auto& things, auto&& size,
                           std::vector<std::vector<int>>& of) {

@@ -16,8 +16,7 @@ CoordinateRow::CoordinateRow(const LoadDescription& load, std::size_t part)
 
 /// The sum of g over the parts is that of the row. @eq{coupling-row}
 void CoordinateRow::evaluate(const PairStep& step, PairTerms& t) const {
-  const CoordinateMotion q =
-      coordinate_motion(coordinate_, step.a, step.b, at_n(step), step.context.conserving);
+  const CoordinateMotion q = motion(step);
   add_force(q, factor_ * step.lambda[0], step, t);
   if (absolute_)
     t.g[0] = factor_ * q.at_n1 - offset_;

@@ -27,6 +27,13 @@ class CoordinateRow : public InteractionItem {
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
 
+ protected:
+  [[nodiscard]] const JointCoordinate& coordinate() const { return coordinate_; }
+  /// The coordinate over the step.
+  [[nodiscard]] CoordinateMotion motion(const PairStep& step) const {
+    return coordinate_motion(coordinate_, step.a, step.b, at_n(step), step.context.conserving);
+  }
+
  private:
   /// Layout of the history: the coordinate at t_n and at the start, and 1 once these are known.
   enum History : int { kNow, kFirst, kStarted, kHistory };

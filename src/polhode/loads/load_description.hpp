@@ -65,7 +65,7 @@ struct LoadDescription {
   double mass_a = 0.0, mass_b = 0.0;                    ///< Of the bodies; 0 for the ground [kg].
   Mat3 inertia_b = Mat3::Zero();             ///< Of b about its centre of mass, body axes [kg m²].
   std::optional<GearPair> gear{};            ///< Of a gear.
-  std::vector<CoupledCoordinate> coupled{};  ///< Of a coupling, the first with factor 1.
+  std::vector<CoupledCoordinate> coupled{};  ///< Of a row, the first with factor 1.
   LoadFunction of_motion{};  ///< From code, in addition to vector or function; world axes.
 
   /// The free coordinate of the joint that the load acts in.

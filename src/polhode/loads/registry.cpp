@@ -4,6 +4,7 @@
 #include <polhode/loads/curve_on_curve.hpp>
 #include <polhode/loads/drag.hpp>
 #include <polhode/loads/gear.hpp>
+#include <polhode/loads/inerter.hpp>
 #include <polhode/loads/joint_spring.hpp>
 #include <polhode/loads/moment.hpp>
 #include <polhode/loads/motor.hpp>
@@ -314,6 +315,8 @@ const std::vector<LoadKind>& load_kinds() {
        {},
        {},
        {"stiffness", "damping", "integral"}},
+      inerter_kind("rotary_inerter", "an angle", "kg*m^2", true),
+      inerter_kind("linear_inerter", "a displacement", "kg", false),
       {"gear",
        "two free coordinates of two joints in a ratio",
        LoadPlace::joints,
@@ -368,7 +371,15 @@ const std::vector<LoadKind>& load_kinds() {
        true,
        add_coupling,
        {{"effort", "N or N m"}, {"coordinate", "m or rad"}, {"rate", "m/s or rad/s"}},
-       report_of<CoordinateRow>},
+       report_of<CoordinateRow>,
+       {},
+       {},
+       {},
+       {},
+       {},
+       {},
+       1,
+       false},
       {"point_on_surface",
        "constraint that keeps a point of a body on an ellipsoid or cylinder of another one",
        LoadPlace::surface,

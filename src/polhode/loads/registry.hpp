@@ -69,6 +69,9 @@ struct LoadKind {
   /// Prefixes of its curves in the plane of x and y: their `points` become the laws curve_x and
   /// curve_y, the value period, and the value open, 1 for a curve with ends.
   std::vector<std::string> curves{};
+  /// Interactions of its group that a load makes, beside those of its further coordinates.
+  int parts = 1;
+  bool switches = true;  ///< Whether events may switch it.
 
   [[nodiscard]] int report_size() const;  ///< Number of values in a report.
   /// Key of a force or moment given in code as a function of the motion; "" for none.

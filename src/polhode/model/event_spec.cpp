@@ -44,18 +44,18 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Refuses to switch a joint whose coordinate a coupling needs.
+/// Refuses to switch a joint whose coordinate a coupling or inerter needs.
 void refuse_coupled(const Model& model, const std::string& joint) {
   for (const LoadSpec& load : model.loads) {
-    if (load.solid >= 0 || load_kind(load.type).place != LoadPlace::row) continue;
+    if (load.solid >= 0 || load_kind(load.type).switches) continue;
     const bool needs = load.joint == joint ||
                        std::any_of(load.others.begin(), load.others.end(),
                                    [&](const CoordinateSpec& o) { return o.joint == joint; });
     if (needs)
       throw InputError(joint,
-                       format("'{}' is in the coupling '{}', so it cannot be switched or break",
-                              joint, load.name),
-                       "Leave the coupling out, or let another joint break");
+                       format("'{}' is in the {} '{}', so it cannot be switched or break", joint,
+                              load.type, load.name),
+                       format("Leave the {} out, or let another joint break", load.type));
   }
 }
 
@@ -67,7 +67,7 @@ void add_companions(const Model& model, std::vector<EventSpec>& events) {
   };
   for (const LoadSpec& load : model.loads) {
     if (load.joint.empty() || load.words.contains("stays")) continue;
-    if (load.solid < 0 && load_kind(load.type).place == LoadPlace::row) continue;
+    if (load.solid < 0 && !load_kind(load.type).switches) continue;
     const bool named =
         any([&](const EventSpec& e) { return is_in(e.on, load.name) || is_in(e.off, load.name); });
     for (std::size_t k = 0; k < given.size(); ++k) {
@@ -107,10 +107,14 @@ SwitchTarget switch_target(const Model& model, const std::string& name) {
   if (count == 0) throw unknown_target(model, name, std::move(names));
   if (count > 1)
     throw InputError(name, format("'{}' is a joint and a load", name), "Rename one of them");
-  if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid < 0 &&
-      load_kind(model.loads[static_cast<std::size_t>(found.index)].type).place == LoadPlace::row)
-    throw InputError(name, format("'{}' is a coupling, which cannot be switched", name),
-                     "Use a gear, which can, where two coordinates suffice");
+  if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid < 0) {
+    const LoadKind& kind = load_kind(model.loads[static_cast<std::size_t>(found.index)].type);
+    if (!kind.switches)
+      throw InputError(name, format("'{}' is a {}, which cannot be switched", name, kind.name),
+                       kind.place == LoadPlace::row
+                           ? "Use a gear, which can, where two coordinates suffice"
+                           : "Let it act throughout");
+  }
   if (found.joint) refuse_coupled(model, name);
   if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid >= 0)
     throw InputError(name, format("'{}' is a load on a solid, which cannot be switched", name),

@@ -374,6 +374,40 @@ TEST_F(Urdf, MimicOfAJointThatMovesNothingCouplesItsFollowers) {
   EXPECT_NEAR(held[0], 0.4, 1e-13);
 }
 
+// A cross without mass between two hinges that do not meet: the same motion as that of a link whose
+// two rotations are written out, J ω and m of the outer link alone.
+TEST_F(Urdf, ALinkWithoutMassBetweenJointsMovesAsTheyLetIt) {
+  const auto text = [&](const std::string& cross) {
+    return link("base", "") + link("cross", cross) +
+           link("arm",
+                "<inertial><origin xyz='0 0 -0.5'/><mass value='2'/>"
+                "<inertia ixx='0.1' iyy='0.12' izz='0.05'/></inertial>") +
+           joint("j", "continuous", "base", "cross", "<axis xyz='1 0 0'/>") +
+           joint("k", "continuous", "cross", "arm",
+                 "<origin xyz='0.02 0.05 0'/><axis xyz='0 1 0'/>");
+  };
+  EXPECT_THAT(notes(text("")),
+              HasSubstr("the link 'cross' has no mass, and takes 1e-10 of that of 'arm'"));
+  for (const double step : {0.02, 0.002, 0.0002}) {
+    const auto moved = [&](const std::string& cross) {
+      Model model = read(text(cross), {"import.start.j=0.7", "import.start.k=-0.4"});
+      model.analysis.step = step;
+      Simulation simulation(model);
+      while (simulation.time() < 0.399) simulation.step(1.0);
+      return simulation.body("arm").r;
+    };
+    const auto with = [&](const std::string& m, const std::string& J) {
+      return moved("<inertial><mass value='" + m + "'/><inertia ixx='" + J + "' iyy='" + J +
+                   "' izz='" + J + "'/></inertial>");
+    };
+    const Vec3 none = moved("");
+    // Linear in a small mass: its effect vanishes towards none.
+    const Vec3 some = with("2e-5", "2e-6") - none, less = with("1e-5", "1e-6") - none;
+    EXPECT_GT(some.norm(), 1e-8) << step;
+    EXPECT_NEAR(some.norm() / less.norm(), 2.0, 1e-3) << step;
+  }
+}
+
 TEST_F(Urdf, MovingLinksNeedMassAndInertia) {
   const std::string base = link("base", "");
   EXPECT_THAT(robot_fault(base + link("arm", "<inertial><mass value='1'/><inertia/></inertial>") +

@@ -2,6 +2,7 @@
 #include <polhode/io/importers/import_model.hpp>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/importers/mjcf.hpp>
 #include <polhode/io/importers/urdf.hpp>
 #include <polhode/io/importers/xacro.hpp>
 #include <polhode/io/text/file_error.hpp>
@@ -9,14 +10,16 @@
 namespace polhode::io {
 
 bool is_importable(const std::string& file) {
-  return file.ends_with(".urdf") || file.ends_with(".xacro");
+  return file.ends_with(".urdf") || file.ends_with(".xacro") || file.ends_with(".xml");
 }
 
 Imported import_model(const ImportOptions& options, const std::string& folder) {
   std::string text = options.file.ends_with(".xacro")
                          ? expanded_by_xacro(options.file, options.arguments)
                          : read_file(options.file);
-  return import_urdf(std::make_shared<SourceText>(options.file, std::move(text)), options, folder);
+  auto source = std::make_shared<SourceText>(options.file, std::move(text));
+  return options.file.ends_with(".xml") ? import_mjcf(std::move(source), options, folder)
+                                        : import_urdf(std::move(source), options, folder);
 }
 
 const char* word_of(ImportNote::Kind kind) {

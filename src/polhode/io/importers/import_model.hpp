@@ -19,6 +19,7 @@ struct ImportOptions {
   std::string shapes = "visual";                     ///< visual | collision | none.
   bool limits = true;                                ///< Whether joints have stops.
   bool friction = true;                              ///< Whether joints have dry friction.
+  bool actuators = true;                             ///< Whether there are motors and servos.
   bool allow_partial = false;                        ///< Whether parts may be left out.
   std::vector<std::string> package_paths;            ///< Folders that contain packages.
   std::map<std::string, std::vector<double>> start;  ///< Coordinates at the start by joint, SI.

@@ -1,401 +1,302 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/urdf.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <numbers>
 #include <set>
 
-#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/geometry/hull.hpp>
-#include <polhode/geometry/read_surface.hpp>
-#include <polhode/io/importers/node_builder.hpp>
-#include <polhode/io/importers/package_paths.hpp>
-#include <polhode/io/importers/urdf_tree.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/importers/ignored_tags.hpp>
+#include <polhode/io/importers/write_robot.hpp>
 
 namespace polhode::io {
 
 namespace {
 
-using Kind = ImportNote::Kind;
+using Element = XmlFile::Element;
 
-/// Writer of a robot as the content of a model file.
-class ModelWriter {
+/// Rotation by roll, pitch, yaw about fixed axes: Rz(yaw) Ry(pitch) Rx(roll).
+Mat3 rotation_of_rpy(const Vec3& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+/// Reader of one file; errors go to its diagnostics.
+class RobotReader {
  public:
-  ModelWriter(const UrdfRobot& robot, const UrdfTree& tree, const ImportOptions& options,
-              XmlFile& xml, const std::string& folder, Imported& out)
-      : robot_(robot), tree_(tree), options_(options), xml_(xml), folder_(folder), out_(out) {}
+  RobotReader(XmlFile& xml, std::vector<ImportNote>& notes)
+      : xml_(xml), notes_(notes), ignored_(xml, notes) {}
 
-  void write() {
-    const NodeBuilder make{xml_.root().GetLineNum()};
-    name_all();
-    SourceNode bodies = make.map(), joints = make.map(), loads = make.map();
-    for (const int i : tree_.order)
-      if (at(tree_.body, i) == i) write_body(i, bodies);
-    for (const int i : tree_.order)
-      if (const int j = at(tree_.parent_joint, i); j >= 0) write_joint(j, joints, loads);
-    for (const UrdfLoop& loop : robot_.loops) write_loop(loop, joints);
-    for (std::size_t j = 0; j < robot_.joints.size(); ++j)
-      if (robot_.joints[j].mimic) write_mimic(static_cast<int>(j), loads);
-    out_.root = make.map();
-    make.put(out_.root, "format", make.text("1"));
-    if (!robot_.name.empty()) {
-      SourceNode title = make.text(robot_.name);
-      title.in_quotes = true;
-      make.put(out_.root, "title", std::move(title));
+  Robot read() {
+    const Element& root = xml_.root();
+    if (std::string_view(root.Name()) != "robot") {
+      xml_.fault(root, format("the file's tag is <{}>, not <robot>", root.Name()),
+                 "Give a URDF, which starts with <robot name=\"...\">.");
+      return {};
     }
-    make.put(out_.root, "gravity", make.vector({0.0, 0.0, -9.81}));
-    make.put(out_.root, "bodies", std::move(bodies));
-    if (!joints.keys.empty()) make.put(out_.root, "joints", std::move(joints));
-    if (!loads.keys.empty()) make.put(out_.root, "loads", std::move(loads));
+    Robot robot;
+    robot.name = xml_.text(root, "name").value_or("");
+    ignored_.attributes(root, {"version"});
+    for (const Element* e : xml_.children(root, "link")) read_link(*e, robot);
+    for (const Element* e : xml_.children(root, "joint")) read_joint(*e, robot);
+    for (const char* tag : {"loop_joint", "loop"})
+      for (const Element* e : xml_.children(root, tag)) read_loop(*e, robot);
+    if (const Element* e = root.FirstChildElement("constraint"))
+      xml_.fault(*e, "<constraint> has no meaning that is agreed on",
+                 "Write the constraint as a joint or load of an overlay.");
+    ignored_.skip(root,
+                  {"material", "transmission", "gazebo", "sensor", "ros2_control", "constraint"});
+    if (robot.links.empty()) xml_.fault(root, "the robot has no link", "Add <link name=\"...\">.");
+    ignored_.add_unread();
+    return robot;
   }
 
  private:
-  template <class T>
-  static const T& at(const std::vector<T>& list, int i) {
-    return list[static_cast<std::size_t>(i)];
-  }
-  static bool at(const std::vector<bool>& list, int i) { return list[static_cast<std::size_t>(i)]; }
-
-  void note(Kind kind, const XmlFile::Element& e, std::string what) {
-    out_.notes.push_back({kind, xml_.place(e), std::move(what)});
-  }
-  /// Error, or a note where partial imports are allowed.
-  void refuse(const XmlFile::Element& e, const std::string& what, const std::string& hint) {
-    if (options_.allow_partial)
-      note(Kind::left_out, e, what);
-    else
-      xml_.fault(e, what, hint + " Or allow a partial import.");
+  Pose read_origin(const Element& parent) {
+    const Element* e = xml_.child(parent, "origin");
+    return e == nullptr ? Pose{} : read_pose(*e);
   }
 
-  /// Names that a model file allows, each once.
-  void name_all() {
-    std::set<std::string> taken{"ground"};
-    const auto choose = [&](const std::string& name, const XmlFile::Element& e) {
-      std::string chosen = allowed_name(name);
-      for (int k = 2; !taken.insert(chosen).second; ++k)
-        chosen = format("{}_{}", allowed_name(name), k);
-      if (chosen != name)
-        note(Kind::approximated, e,
-             format("{} is called {} in the model", quote(name), quote(chosen)));
-      return chosen;
-    };
-    for (const UrdfLink& l : robot_.links) link_name_.push_back(choose(l.name, *l.at));
-    taken.clear();
-    for (const UrdfJoint& j : robot_.joints) joint_name_[j.name] = choose(j.name, *j.at);
-    for (const UrdfLoop& l : robot_.loops) joint_name_[l.name] = choose(l.name, *l.at);
+  Pose read_pose(const Element& e) {
+    Pose pose;
+    if (const auto p = xml_.vector(e, "xyz")) pose.p = *p;
+    if (const auto rpy = xml_.vector(e, "rpy")) pose.R = rotation_of_rpy(*rpy);
+    return pose;
   }
 
-  /// Frame of a link in its body's coordinates.
-  [[nodiscard]] Pose in_body(int link) const {
-    const int body = at(tree_.body, link);
-    return body == link ? Pose{} : at(tree_.world, body).inverse() * at(tree_.world, link);
+  void read_link(const Element& e, Robot& robot) {
+    RobotLink link;
+    link.name = xml_.required_text(e, "name");
+    link.at = &e;
+    ignored_.attributes(e, {"type"});
+    if (!link.name.empty() && !links_.insert(link.name).second)
+      xml_.fault(e, format("the link {} stands twice", quote(link.name)), "Rename one of them.");
+    if (const Element* inertial = xml_.child(e, "inertial")) read_inertial(*inertial, link);
+    for (const char* tag : {"visual", "collision"})
+      for (const Element* shape : xml_.children(e, tag))
+        read_shape(*shape, tag == std::string_view("visual") ? link.visual : link.collision);
+    ignored_.skip(e, {"self_collision_checking", "contact", "sensor", "gazebo"});
+    robot.links.push_back(std::move(link));
   }
 
-  void write_body(int i, SourceNode& bodies) {
-    const UrdfLink& link = at(robot_.links, i);
-    const NodeBuilder make{link.at->GetLineNum()};
-    const geometry::MassProperties& mass = at(tree_.mass, i);
-    SourceNode body = make.map();
-    const bool grounded = at(tree_.grounded, i);
-    if (grounded) make.put(body, "fixed", make.boolean(true));
-    if (mass.mass > 0.0) make.put(body, "mass", make.number(mass.mass));
-    if (mass.mass > 0.0 && is_inertia(mass)) make.put(body, "inertia", make.inertia(mass.inertia));
-    if (!mass.com.isZero(0.0) && mass.mass > 0.0) make.put(body, "com", make.vector(mass.com));
-    const Pose& world = at(tree_.world, i);
-    make.put(body, "position_of", make.text("origin"));
-    make.put(body, "position", make.vector(world.p));
-    if (!world.R.isIdentity(0.0))
-      make.put(body, "orientation", make.orientation(Quat(world.R).normalized()));
-    SourceNode shapes = make.list();
-    if (options_.shapes != "none")
-      for (const int k : tree_.order)
-        if (at(tree_.body, k) == i) write_shapes(k, shapes);
-    if (!shapes.children.empty()) make.put(body, "shape", std::move(shapes));
-    make.put(bodies, at(link_name_, i), std::move(body));
-  }
-
-  static bool is_inertia(const geometry::MassProperties& mass) {
-    try {
-      geometry::check_mass_properties("", mass.mass, mass.inertia);
-      return true;
-    } catch (const InputError&) {
-      return false;
+  void read_inertial(const Element& e, RobotLink& link) {
+    const Element* mass = xml_.child(e, "mass");
+    const Element* inertia = xml_.child(e, "inertia");
+    const Pose pose = read_origin(e);
+    link.has_inertial = true;
+    link.mass.com = pose.p;
+    if (mass == nullptr) {
+      xml_.fault(e, format("the inertial of {} has no <mass>", quote(link.name)),
+                 "Write <mass value=\"...\"/>.");
+    } else {
+      const auto value = xml_.number(*mass, "value");
+      link.mass.mass = value.value_or(0.0);
+      if (!value && mass->Attribute("value") == nullptr)
+        xml_.fault(*mass, "<mass> has no 'value'", "Write <mass value=\"...\"/>.");
+      if (link.mass.mass < 0.0)
+        xml_.fault(*mass, format("the mass of {} is {}", quote(link.name), link.mass.mass),
+                   "Give a mass that is not negative.");
     }
+    if (inertia == nullptr) return;
+    const auto entry = [&](const char* name) { return xml_.number(*inertia, name).value_or(0.0); };
+    Mat3 J;
+    J(0, 0) = entry("ixx");
+    J(1, 1) = entry("iyy");
+    J(2, 2) = entry("izz");
+    J(0, 1) = J(1, 0) = entry("ixy");
+    J(0, 2) = J(2, 0) = entry("ixz");
+    J(1, 2) = J(2, 1) = entry("iyz");
+    const Mat3 turned = pose.R * J * pose.R.transpose();
+    link.mass.inertia = pose.R.isIdentity(0.0) ? J : Mat3(0.5 * (turned + turned.transpose()));
   }
 
-  void write_shapes(int i, SourceNode& shapes) {
-    const UrdfLink& link = at(robot_.links, i);
-    const bool visual = options_.shapes == "visual" && !link.visual.empty();
-    for (const UrdfShape& shape : visual ? link.visual : link.collision) {
-      const NodeBuilder make{shape.at->GetLineNum()};
-      SourceNode node = make.map();
-      if (shape.kind == "mesh") {
-        if (!write_mesh(shape, make, node)) continue;
-      } else {
-        std::vector<SourceNode> sizes;
-        for (const double s : shape.sizes) sizes.push_back(make.number(s));
-        make.put(node, shape.kind, make.list(std::move(sizes)));
-      }
-      const Pose pose = in_body(i) * shape.pose;
-      if (!pose.p.isZero(0.0)) make.put(node, "position", make.vector(pose.p));
-      if (!pose.R.isIdentity(0.0))
-        make.put(node, "orientation", make.orientation(Quat(pose.R).normalized()));
-      shapes.children.push_back(std::move(node));
-    }
-  }
-
-  /// Mesh as a surface if it is closed, else its convex hull. @returns whether there is one
-  bool write_mesh(const UrdfShape& shape, const NodeBuilder& make, SourceNode& node) {
-    const std::string robot_folder = std::filesystem::path(options_.file).parent_path().string();
-    const auto path = find_named_file(shape.file, robot_folder, options_.package_paths);
-    if (!path) {
-      refuse(*shape.at, format("there is no mesh {}", quote(shape.file)),
-             "Give import.package_paths, or import.shapes: none.");
-      return false;
-    }
-    std::string ending = std::filesystem::path(*path).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (ending != ".stl" && ending != ".obj") {
-      const std::string what = format("the mesh {} is not read, as there is no reader of {} files",
-                                      quote(shape.file), ending);
-      if (options_.shapes == "collision")
-        refuse(*shape.at, what, "Convert it to STL or OBJ.");
-      else
-        note(Kind::ignored, *shape.at, what + ": it is a picture only");
-      return false;
-    }
-    try {
-      const geometry::TriangleSurface surface = geometry::read_surface(*path);
-      const double scale = shape.scale.x();
-      const bool uniform = scale > 0.0 && shape.scale == Vec3::Constant(scale);
-      std::string reason = uniform ? "" : "its scale differs by direction or mirrors it";
-      if (uniform) {
-        try {
-          geometry::check_closed(shape.file, surface);
-        } catch (const InputError&) {
-          reason = "its surface is not closed";
-        }
-      }
-      if (!reason.empty())
-        note(
-            Kind::approximated, *shape.at,
-            format("the mesh {} is replaced by its convex hull, as {}", quote(shape.file), reason));
-      std::vector<Vec3> corners = surface.points;
-      for (Vec3& x : corners) x = x.cwiseProduct(shape.scale);
-      const geometry::TriangleSurface hull =
-          reason.empty() ? geometry::TriangleSurface{} : geometry::convex_hull(shape.file, corners);
-      SourceNode given = make.map();
-      if (uniform) {
-        make.put(given, "file", quoted(make, relative(*path)));
-        if (scale != 1.0) make.put(given, "scale", make.number(scale));
-      } else {
-        SourceNode points = make.list();
-        for (const Vec3& x : hull.points) points.children.push_back(make.vector(x));
-        make.put(given, "points", std::move(points));
-      }
-      make.put(node, reason.empty() ? "mesh" : "hull", std::move(given));
-      return true;
-    } catch (const InputError& error) {
-      const std::string what =
-          format("the mesh {} cannot be used: {}", quote(shape.file), error.what_is_wrong());
-      if (options_.shapes == "collision")
-        refuse(*shape.at, what, "Mend it.");
-      else
-        note(Kind::ignored, *shape.at, what + "; it is a picture only");
-    }
-    return false;
-  }
-
-  static SourceNode quoted(const NodeBuilder& make, const std::string& text) {
-    SourceNode node = make.text(text);
-    node.in_quotes = true;
-    return node;
-  }
-
-  /// Path as seen from the model's folder.
-  [[nodiscard]] std::string relative(const std::string& path) const {
-    namespace fs = std::filesystem;
-    std::error_code ignored;
-    const fs::path here =
-        fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_), ignored);
-    return fs::absolute(path, ignored)
-        .lexically_normal()
-        .lexically_proximate(here.lexically_normal())
-        .string();
-  }
-
-  /// Points and axes of a joint on both links.
-  void put_frames(const NodeBuilder& make, SourceNode& node, const Pose& a, const Pose& b,
-                  const Vec3& axis, bool axes, bool zero) {
-    make.put(node, "at_body", make.list({make.vector(a.p), make.vector(b.p)}));
-    if (!axes) return;
-    make.put(node, "axis_body",
-             make.list({make.direction(a.R * axis), make.direction(b.R * axis)}));
-    const Vec3 x = axes_along(axis).col(0);
-    if (zero)
-      make.put(node, "x_axis_body", make.list({make.direction(a.R * x), make.direction(b.R * x)}));
-  }
-
-  [[nodiscard]] SourceNode bodies_of(const NodeBuilder& make, int a, int b) const {
-    return make.list({make.text(at(link_name_, at(tree_.body, a))),
-                      make.text(at(link_name_, at(tree_.body, b)))});
-  }
-
-  void write_joint(int j, SourceNode& joints, SourceNode& loads) {
-    const UrdfJoint& joint = at(robot_.joints, j);
-    const int parent = at(tree_.parent, j), child = at(tree_.child, j);
-    if (at(tree_.body, parent) == at(tree_.body, child) || at(tree_.grounded, child)) return;
-    const NodeBuilder make{joint.at->GetLineNum()};
-    const std::string& name = joint_name_.at(joint.name);
-    if (joint.type == "floating") return;
-    SourceNode node = make.map();
-    const std::string type = joint.turns() ? "revolute" : joint.type;
-    make.put(node, "type", make.text(type));
-    make.put(node, "bodies", bodies_of(make, parent, child));
-    put_frames(make, node, in_body(parent) * joint.origin, in_body(child), joint.axis,
-               type != "fixed", joint.turns() || type == "planar");
-    if (joint.is_single()) {
-      put_limits(make, joint, at(tree_.start, j)[0], node);
-      put_losses(make, joint, name, node, loads);
-    } else if (type != "fixed" && (joint.damping > 0.0 || joint.friction > 0.0)) {
-      refuse(*joint.at,
-             format("the damping or friction of the {} joint {} has no meaning", type,
-                    quote(joint.name)),
-             "Leave it out.");
-    }
-    make.put(joints, name, std::move(node));
-  }
-
-  void put_limits(const NodeBuilder& make, const UrdfJoint& joint, double start, SourceNode& node) {
-    if (!options_.limits || (!joint.lower && !joint.upper)) return;
-    // An angle counts from between -pi and pi at the start.
-    const double turns =
-        joint.turns() ? start - std::remainder(start, 2.0 * std::numbers::pi) : 0.0;
-    if (turns != 0.0)
-      note(Kind::approximated, *joint.at,
-           format("the angle of {} counts from {:.6g} rad", quote(joint.name), turns));
-    SourceNode limits = make.map();
-    if (joint.lower) make.put(limits, "lower", make.number(*joint.lower - turns));
-    if (joint.upper) make.put(limits, "upper", make.number(*joint.upper - turns));
-    make.put(node, "limits", std::move(limits));
-  }
-
-  void put_losses(const NodeBuilder& make, const UrdfJoint& joint, const std::string& name,
-                  SourceNode& node, SourceNode& loads) {
-    if (joint.friction > 0.0 && options_.friction) {
-      SourceNode friction = make.map();
-      make.put(friction, joint.turns() ? "moment" : "force", make.number(joint.friction));
-      make.put(node, "friction", std::move(friction));
-    }
-    if (joint.damping == 0.0) return;
-    SourceNode damper = make.map();
-    make.put(damper, "type",
-             make.text(joint.turns() ? "torsional_spring" : "translational_spring"));
-    make.put(damper, "joint", make.text(name));
-    make.put(damper, "damping", make.number(joint.damping));
-    make.put(loads, name + "_damping", std::move(damper));
-  }
-
-  void write_loop(const UrdfLoop& loop, SourceNode& joints) {
-    int links[2] = {-1, -1};
-    for (int k = 0; k < 2; ++k) {
-      const auto found = tree_.link_index.find(loop.links[k]);
-      if (found != tree_.link_index.end())
-        links[k] = found->second;
-      else
-        xml_.fault(*loop.at, format("there is no link {}", quote(loop.links[k])),
-                   "Name a link of the file.");
-    }
-    if (links[0] < 0 || links[1] < 0) return;
-    if (at(tree_.body, links[0]) == at(tree_.body, links[1]) ||
-        (at(tree_.grounded, links[0]) && at(tree_.grounded, links[1]))) {
-      xml_.fault(*loop.at,
-                 format("the links of {} cannot move relative to each other", quote(loop.name)),
-                 "Leave it out.");
+  void read_shape(const Element& e, std::vector<RobotShape>& shapes) {
+    RobotShape shape;
+    shape.at = &e;
+    shape.pose = read_origin(e);
+    ignored_.attributes(e, {"name"});
+    ignored_.skip(e, {"material", "verbose", "contact_coefficients"});
+    const Element* geometry = xml_.child(e, "geometry");
+    if (geometry == nullptr) {
+      xml_.fault(e, format("<{}> has no <geometry>", e.Name()), "Add it, or leave the tag out.");
       return;
     }
-    const NodeBuilder make{loop.at->GetLineNum()};
-    SourceNode node = make.map();
-    const std::string type = loop.type == "continuous" ? "revolute" : loop.type;
-    make.put(node, "type", make.text(type));
-    make.put(node, "bodies", bodies_of(make, links[0], links[1]));
-    put_frames(make, node, in_body(links[0]) * loop.frames[0], in_body(links[1]) * loop.frames[1],
-               loop.axis, type != "fixed" && type != "spherical", false);
-    make.put(joints, joint_name_.at(loop.name), std::move(node));
+    if (read_geometry(*geometry, shape)) shapes.push_back(std::move(shape));
   }
 
-  /// Whether a joint moves in the model.
-  [[nodiscard]] bool moves(int j) const {
-    return !at(tree_.grounded, at(tree_.child, j)) &&
-           at(tree_.body, at(tree_.parent, j)) != at(tree_.body, at(tree_.child, j));
+  /// Number that must be there and positive; 0 after an error.
+  double length(const Element& e, const char* attribute) {
+    const auto value = xml_.number(e, attribute);
+    if (value && *value > 0.0) return *value;
+    if (value || e.Attribute(attribute) == nullptr)
+      xml_.fault(e,
+                 format("'{}' of <{}> must be above 0, but is {}", attribute, e.Name(),
+                        value ? format("{}", *value) : "missing"),
+                 "Give a length [m].");
+    return 0.0;
   }
 
-  /// A joint's coordinate as factor times that of another one plus an offset.
-  struct Follows {
-    int leader;
-    double factor, offset;
-  };
-
-  /// Coordinate of a joint with a mimic, by that of the joint at the beginning of the chain.
-  [[nodiscard]] Follows follows(int j) const {
-    Follows f{j, 1.0, 0.0};
-    while (const auto& mimic = at(robot_.joints, f.leader).mimic) {
-      f.offset += f.factor * mimic->offset;
-      f.factor *= mimic->multiplier;
-      f.leader = tree_.joint_index.at(mimic->joint);
+  bool read_geometry(const Element& e, RobotShape& shape) {
+    if (const Element* box = xml_.child(e, "box")) {
+      shape.kind = "box";
+      const auto size = xml_.vector(*box, "size");
+      if (size && size->minCoeff() > 0.0)
+        shape.sizes = {size->x(), size->y(), size->z()};
+      else if (size || box->Attribute("size") == nullptr)
+        xml_.fault(*box, "the size of <box> must be three numbers above 0",
+                   "Write <box size=\"x y z\"/>.");
+    } else if (const Element* ball = xml_.child(e, "sphere")) {
+      shape.kind = "sphere";
+      shape.sizes = {2.0 * length(*ball, "radius")};
+    } else if (const Element* bar = xml_.child(e, "cylinder")) {
+      shape.kind = "cylinder";
+      shape.sizes = {2.0 * length(*bar, "radius"), length(*bar, "length")};
+    } else if (const Element* pill = xml_.child(e, "capsule")) {
+      shape.kind = "capsule";  // The length in a URDF is without the hemispheres.
+      const double radius = length(*pill, "radius");
+      shape.sizes = {2.0 * radius, length(*pill, "length") + 2.0 * radius};
+    } else if (const Element* mesh = xml_.child(e, "mesh")) {
+      shape.kind = "mesh";
+      shape.file = xml_.required_text(*mesh, "filename");
+      if (const auto scale = xml_.vector(*mesh, "scale")) shape.scale = *scale;
+      return !shape.file.empty();
+    } else {
+      return false;  // Unknown ones are listed as unread.
     }
-    return f;
+    return std::all_of(shape.sizes.begin(), shape.sizes.end(), [](double s) { return s > 0.0; }) &&
+           !shape.sizes.empty();
   }
 
-  /// Joints that follow one that moves nothing, and is held, follow the first one of them.
-  void write_mimic(int j, SourceNode& loads) {
-    const UrdfJoint& joint = at(robot_.joints, j);
-    if (!moves(j)) return;
-    Follows f = follows(j);
-    if (f.factor != 0.0 && !moves(f.leader)) {
-      const auto [first, is_first] = first_follower_.try_emplace(f.leader, j);
-      if (is_first) {
-        out_.notes.push_back(
-            {Kind::approximated, xml_.place(*joint.mimic->at),
-             format("the joint {} moves freely, as {}, which it follows, moves no mass",
-                    quote(joint.name), quote(at(robot_.joints, f.leader).name))});
-        return;
+  /// @param needed  Whether the joint has an axis.
+  Vec3 read_axis(const Element& parent, bool needed) {
+    const Element* e = xml_.child(parent, "axis");
+    if (e == nullptr) return Vec3::UnitX();
+    const auto axis = xml_.vector(*e, "xyz");
+    if (!axis) return Vec3::UnitX();
+    if (axis->norm() > 0.0) return axis->normalized();
+    if (!needed) return Vec3::UnitX();
+    xml_.fault(*e, "the axis has no length", "Give a direction, such as xyz=\"0 0 1\".");
+    return Vec3::UnitX();
+  }
+
+  void read_joint(const Element& e, Robot& robot) {
+    RobotJoint joint;
+    joint.at = &e;
+    joint.name = xml_.required_text(e, "name");
+    joint.type = xml_.required_text(e, "type");
+    if (!joint.name.empty() && !joints_.insert(joint.name).second)
+      xml_.fault(e, format("the joint {} stands twice", quote(joint.name)), "Rename one of them.");
+    static const std::vector<std::string> types{"revolute", "continuous", "prismatic",
+                                                "fixed",    "floating",   "planar"};
+    if (!joint.type.empty() && std::find(types.begin(), types.end(), joint.type) == types.end())
+      xml_.fault(
+          e, format("the joint {} has the unknown type {}", quote(joint.name), quote(joint.type)),
+          did_you_mean(joint.type, types) + "Types: " + name_list(types) + ".");
+    const auto link_of = [&](const char* tag) {
+      const Element* link = xml_.child(e, tag);
+      if (link != nullptr) return xml_.required_text(*link, "link");
+      xml_.fault(e, format("the joint {} has no <{}>", quote(joint.name), tag),
+                 format("Write <{} link=\"...\"/>.", tag));
+      return std::string();
+    };
+    joint.parent = link_of("parent");
+    joint.child = link_of("child");
+    joint.origin = read_origin(e);
+    joint.axis = read_axis(e, joint.type != "fixed" && joint.type != "floating");
+    read_limit(e, joint);
+    if (const Element* dynamics = xml_.child(e, "dynamics")) {
+      joint.damping = not_negative(*dynamics, "damping");
+      joint.friction = not_negative(*dynamics, "friction");
+      if (joint.type == "fixed" && (joint.damping > 0.0 || joint.friction > 0.0))
+        ignored_.add(*dynamics, "<dynamics> of a fixed joint", "has no influence on the motion");
+    }
+    if (const Element* mimic = xml_.child(e, "mimic")) read_mimic(*mimic, joint);
+    ignored_.skip(e, {"calibration", "safety_controller", "gazebo", "hardwareInterface"});
+    robot.joints.push_back(std::move(joint));
+  }
+
+  double not_negative(const Element& e, const char* attribute) {
+    const double value = xml_.number(e, attribute).value_or(0.0);
+    if (value < 0.0)
+      xml_.fault(e, format("'{}' of <{}> is {}", attribute, e.Name(), value),
+                 "Give a value that is not negative.");
+    return std::max(0.0, value);
+  }
+
+  void read_limit(const Element& e, RobotJoint& joint) {
+    const Element* limit = xml_.child(e, "limit");
+    if (limit == nullptr) return;
+    for (const char* unused : {"effort", "velocity", "acceleration", "deceleration", "jerk"})
+      if (xml_.text(*limit, unused))
+        ignored_.add(*limit, format("attribute '{}' of <limit>", unused),
+                     "limits an actuator, and there is none");
+    const auto lower = xml_.number(*limit, "lower"), upper = xml_.number(*limit, "upper");
+    if (joint.type != "revolute" && joint.type != "prismatic") return;
+    if (!lower && !upper) return;
+    const double low = lower.value_or(0.0), high = upper.value_or(0.0);
+    if (low < high) {
+      joint.lower = low;
+      joint.upper = high;
+    } else if (low > high) {
+      xml_.fault(*limit,
+                 format("the joint {} has the limits {} to {}", quote(joint.name), low, high),
+                 "Give a lower limit below the upper one, or type=\"fixed\".");
+    } else {
+      notes_.push_back(
+          {ImportNote::Kind::approximated, xml_.place(*limit),
+           format("the joint {} has both limits at {}: it has no stops", quote(joint.name), low)});
+    }
+  }
+
+  void read_mimic(const Element& e, RobotJoint& joint) {
+    RobotMimic mimic;
+    mimic.at = &e;
+    mimic.joint = xml_.required_text(e, "joint");
+    mimic.multiplier = xml_.number(e, "multiplier").value_or(1.0);
+    mimic.offset = xml_.number(e, "offset").value_or(0.0);
+    if (mimic.joint.empty()) return;
+    if (joint.type == "fixed")
+      ignored_.add(e, "<mimic> of a fixed joint", "has no influence on the motion");
+    else
+      joint.mimic = mimic;
+  }
+
+  void read_loop(const Element& e, Robot& robot) {
+    RobotLoop loop;
+    loop.at = &e;
+    loop.name = xml_.required_text(e, "name");
+    loop.type = xml_.required_text(e, "type");
+    if (!loop.name.empty() && !joints_.insert(loop.name).second)
+      xml_.fault(e, format("the joint {} stands twice", quote(loop.name)), "Rename one of them.");
+    static const std::vector<std::string> types{"revolute",  "continuous",  "prismatic", "fixed",
+                                                "spherical", "cylindrical", "planar"};
+    if (!loop.type.empty() && std::find(types.begin(), types.end(), loop.type) == types.end())
+      xml_.fault(e, format("<{}> has the unknown type {}", e.Name(), quote(loop.type)),
+                 did_you_mean(loop.type, types) + "Types: " + name_list(types) + ".");
+    const bool pair = std::string_view(e.Name()) == "loop_joint";
+    const char* tags[2] = {pair ? "link1" : "predecessor", pair ? "link2" : "successor"};
+    for (int k = 0; k < 2; ++k) {
+      const Element* link = xml_.child(e, tags[k]);
+      if (link == nullptr) {
+        xml_.fault(e, format("<{}> has no <{}>", e.Name(), tags[k]),
+                   format("Write <{} link=\"...\" xyz=\"...\" rpy=\"...\"/>.", tags[k]));
+        continue;
       }
-      const Follows other = follows(first->second);
-      f = {first->second, f.factor / other.factor,
-           f.offset - f.factor / other.factor * other.offset};
+      loop.links[k] = xml_.required_text(*link, "link");
+      const Element* origin = xml_.child(*link, "origin");
+      loop.frames[k] = read_pose(origin != nullptr ? *origin : *link);
     }
-    const NodeBuilder make{joint.mimic->at->GetLineNum()};
-    SourceNode row = make.map();
-    make.put(row, "type", make.text("coupling"));
-    std::vector<SourceNode> joints{make.text(joint_name_.at(joint.name))};
-    if (f.factor != 0.0) {
-      joints.push_back(make.text(joint_name_.at(at(robot_.joints, f.leader).name)));
-      if (at(robot_.joints, f.leader).turns()) {
-        // Turns of its start, which the model does not count.
-        const double start = at(tree_.start, f.leader)[0];
-        constexpr double kTurn = 2.0 * std::numbers::pi;
-        f.offset += f.factor * kTurn * std::round(start / kTurn);
-      }
-    }
-    make.put(row, "joints", make.list(std::move(joints)));
-    if (f.factor != 0.0) make.put(row, "factors", make.list({make.number(f.factor)}));
-    make.put(row, "offset", make.number(f.offset));
-    make.put(loads, joint_name_.at(joint.name) + "_mimic", std::move(row));
+    loop.axis = read_axis(e, loop.type != "fixed" && loop.type != "spherical");
+    robot.loops.push_back(std::move(loop));
   }
 
-  const UrdfRobot& robot_;
-  const UrdfTree& tree_;
-  const ImportOptions& options_;
   XmlFile& xml_;
-  const std::string& folder_;
-  Imported& out_;
-  std::vector<std::string> link_name_;
-  std::map<std::string, std::string> joint_name_;
-  std::map<int, int> first_follower_;  ///< By leader that moves nothing.
+  std::vector<ImportNote>& notes_;
+  IgnoredTags ignored_;
+  std::set<std::string> links_, joints_;
 };
 
 }  // namespace
@@ -407,11 +308,9 @@ Imported import_urdf(std::shared_ptr<const SourceText> source, const ImportOptio
   result.source = source;
   Diagnostics diagnostics(*source);
   XmlFile xml(source, diagnostics);
-  const UrdfRobot robot = read_urdf_robot(xml, result.notes);
+  const Robot robot = RobotReader(xml, result.notes).read();
   diagnostics.throw_if_any();
-  UrdfTree tree;
-  if (arrange(robot, options, xml, diagnostics, result.notes, tree))
-    ModelWriter(robot, tree, options, xml, folder, result).write();
+  write_robot(robot, options, xml, diagnostics, folder, result);
   diagnostics.throw_if_any();
   return result;
 }

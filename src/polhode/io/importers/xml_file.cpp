@@ -3,8 +3,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 namespace polhode::io {
 
@@ -76,6 +80,78 @@ SourceLocation XmlFile::place(int line) const {
           line == 0 ? 0 : 1 + static_cast<int>(column == std::string_view::npos ? 0 : column)};
 }
 
+int XmlFile::line(const Element& element) const {
+  const auto found = included_.find(&element);
+  return found == included_.end() ? element.GetLineNum() : found->second;
+}
+
+void XmlFile::include_files(const std::string& folder) {
+  bytes_ = source_->text().size();
+  const std::function<void(tinyxml2::XMLElement&)> search = [&](tinyxml2::XMLElement& parent) {
+    for (tinyxml2::XMLNode* node = parent.FirstChild(); node != nullptr;) {
+      tinyxml2::XMLElement* e = node->ToElement();
+      if (e != nullptr && std::string_view(e->Name()) == "include") {
+        node = include_file(*e, folder);
+        continue;
+      }
+      if (e != nullptr) search(*e);
+      node = node->NextSibling();
+    }
+  };
+  search(*document_->RootElement());
+}
+
+/// Puts the content of a file in the place of its tag. @returns what comes first there.
+tinyxml2::XMLNode* XmlFile::include_file(tinyxml2::XMLElement& include, const std::string& folder) {
+  tinyxml2::XMLNode* parent = include.Parent();
+  tinyxml2::XMLNode* last = &include;
+  const int at = line(include);
+  // Not noted as read: the tag is deleted, and another one may get its place in memory.
+  const char* given = include.Attribute("file");
+  const std::string name = given == nullptr ? "" : given;
+  const std::string path = (std::filesystem::path(folder) / name).string();
+  const auto insert = [&](const std::string& text) {
+    tinyxml2::XMLDocument part;
+    bytes_ += text.size();
+    const bool sound = bytes_ <= kMostXmlBytes && !declares_entities(text) && is_utf8(text) &&
+                       part.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS &&
+                       part.RootElement() != nullptr;
+    if (!sound) {
+      fault(include, format("the included file {} is not XML, or too large", quote(name)),
+            "Check it, or leave it out.");
+      return;
+    }
+    for (const tinyxml2::XMLNode* child = part.RootElement()->FirstChild(); child != nullptr;
+         child = child->NextSibling()) {
+      last = parent->InsertAfterChild(last, child->DeepClone(document_.get()));
+      const std::function<void(const tinyxml2::XMLNode&)> number =
+          [&](const tinyxml2::XMLNode& node) {
+            if (node.ToElement() != nullptr) included_[node.ToElement()] = at;
+            for (const auto* below = node.FirstChild(); below != nullptr;
+                 below = below->NextSibling())
+              number(*below);
+          };
+      number(*last);
+    }
+  };
+  if (name.empty()) {
+    fault(include, "<include> has no 'file'", "Write <include file=\"...\"/>.");
+  } else {
+    if (!included_files_.insert(path).second)
+      fault(include, format("the file {} is included twice", quote(name)), "Include it once.");
+    else
+      try {
+        insert(read_file(path));
+      } catch (const FileError&) {
+        fault(include, format("there is no file {} to include", quote(name)),
+              "Names are relative to the folder of the model.");
+      }
+  }
+  tinyxml2::XMLNode* first = include.NextSibling();
+  parent->DeleteChild(&include);
+  return first;
+}
+
 void XmlFile::fault(const Element& element, std::string what, std::string hint) {
   diagnostics_.add(place(element), "", std::move(what), std::move(hint));
 }
@@ -119,7 +195,7 @@ std::string XmlFile::required_text(const Element& element, const char* attribute
 }
 
 std::optional<std::vector<double>> XmlFile::numbers(const Element& element, const char* attribute,
-                                                    std::size_t count) {
+                                                    std::size_t least, std::size_t most) {
   const auto value = text(element, attribute);
   if (!value) return std::nullopt;
   std::vector<double> list;
@@ -133,21 +209,25 @@ std::optional<std::vector<double>> XmlFile::numbers(const Element& element, cons
     if (sound) list.push_back(*number);
     rest.remove_prefix(end);
   }
-  if (sound && list.size() == count) return list;
+  if (sound && list.size() >= least && list.size() <= most) return list;
+  const std::string wanted = most == 1       ? "a number"
+                             : least == most ? format("{} numbers", most)
+                                             : format("{} to {} numbers", least, most);
   fault(element,
-        format("'{}' of <{}> is {}, not {}", attribute, element.Name(), quote(*value),
-               count == 1 ? std::string("a number") : format("{} numbers", count)),
-        count == 1 ? "Give a finite number." : format("Give {} finite numbers.", count));
+        format("'{}' of <{}> is {}, not {}", attribute, element.Name(), quote(*value), wanted),
+        most == 1       ? "Give a finite number."
+        : least == most ? format("Give {} finite numbers.", most)
+                        : format("Give {} to {} finite numbers.", least, most));
   return std::nullopt;
 }
 
 std::optional<double> XmlFile::number(const Element& element, const char* attribute) {
-  const auto list = numbers(element, attribute, 1);
+  const auto list = numbers(element, attribute, 1, 1);
   return list ? std::optional((*list)[0]) : std::nullopt;
 }
 
 std::optional<Vec3> XmlFile::vector(const Element& element, const char* attribute) {
-  const auto list = numbers(element, attribute, 3);
+  const auto list = numbers(element, attribute, 3, 3);
   return list ? std::optional(Vec3((*list)[0], (*list)[1], (*list)[2])) : std::nullopt;
 }
 
@@ -155,12 +235,12 @@ void XmlFile::list_unread(const Element& element, std::vector<Unread>& list) con
   for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
     if (!read_.contains(a) && !std::string_view(a->Name()).starts_with("xmlns"))
       list.push_back(
-          {element.GetLineNum(), format("attribute {} of <{}>", quote(a->Name()), element.Name())});
+          {line(element), format("attribute {} of <{}>", quote(a->Name()), element.Name())});
   for (const Element* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     if (read_.contains(e))
       list_unread(*e, list);
     else
-      list.push_back({e->GetLineNum(), format("<{}> in <{}>", e->Name(), element.Name())});
+      list.push_back({line(*e), format("<{}> in <{}>", e->Name(), element.Name())});
   }
 }
 

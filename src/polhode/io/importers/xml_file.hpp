@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -31,11 +32,15 @@ class XmlFile {
   XmlFile(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics);
 
   [[nodiscard]] const Element& root() const { return *root_; }
-  [[nodiscard]] SourceLocation place(const Element& element) const {
-    return place(element.GetLineNum());
-  }
+  [[nodiscard]] SourceLocation place(const Element& element) const { return place(line(element)); }
+  /// Line of a tag; of one in an included file that of the <include>.
+  [[nodiscard]] int line(const Element& element) const;
   [[nodiscard]] SourceLocation place(int line) const;
   void fault(const Element& element, std::string what, std::string hint);
+
+  /// Replaces each <include file="..."/> by what the root tag of that file contains.
+  /// @param folder  Folder to which the names of included files are relative.
+  void include_files(const std::string& folder);
 
   /// First child of a name, or null.
   const Element* child(const Element& parent, const char* name);
@@ -52,6 +57,9 @@ class XmlFile {
   std::optional<double> number(const Element& element, const char* attribute);
   /// Three numbers; likewise.
   std::optional<Vec3> vector(const Element& element, const char* attribute);
+  /// From `least` to `most` numbers; likewise.
+  std::optional<std::vector<double>> numbers(const Element& element, const char* attribute,
+                                             std::size_t least, std::size_t most);
 
   /// A tag or attribute that was not read.
   struct Unread {
@@ -62,15 +70,17 @@ class XmlFile {
   [[nodiscard]] std::vector<Unread> unread() const;
 
  private:
-  std::optional<std::vector<double>> numbers(const Element& element, const char* attribute,
-                                             std::size_t count);
+  tinyxml2::XMLNode* include_file(tinyxml2::XMLElement& include, const std::string& folder);
   void list_unread(const Element& element, std::vector<Unread>& list) const;
 
   std::shared_ptr<const SourceText> source_;
   Diagnostics& diagnostics_;
   std::unique_ptr<tinyxml2::XMLDocument> document_;
   const Element* root_ = nullptr;
-  std::unordered_set<const void*> read_;  ///< Tags and attributes.
+  std::unordered_set<const void*> read_;           ///< Tags and attributes.
+  std::unordered_map<const void*, int> included_;  ///< Lines of included tags.
+  std::unordered_set<std::string> included_files_;
+  std::size_t bytes_ = 0;  ///< Of all files.
 };
 
 }  // namespace polhode::io

@@ -24,7 +24,7 @@ std::string folder_of(const std::string& file) { return fs::path(file).parent_pa
 /// "robot" of "robot.urdf.xacro".
 fs::path overlay_beside(const std::string& file) {
   std::string stem = file;
-  for (const char* ending : {".xacro", ".urdf"})
+  for (const char* ending : {".xacro", ".urdf", ".xml"})
     if (stem.ends_with(ending)) stem.resize(stem.size() - std::string_view(ending).size());
   return stem + ".overlay.yaml";
 }
@@ -72,6 +72,7 @@ ImportOptions read_options(ReadContext& context, const SourceNode& node,
   if (const auto word = section.choice("shapes")) options.shapes = *word;
   options.limits = section.boolean("limits").value_or(true);
   options.friction = section.boolean("friction").value_or(true);
+  options.actuators = section.boolean("actuators").value_or(true);
   options.allow_partial = section.boolean("allow_partial").value_or(false);
   if (const auto paths = section.names("package_paths"))
     for (const std::string& path : *paths)
@@ -80,7 +81,7 @@ ImportOptions read_options(ReadContext& context, const SourceNode& node,
   if (!options.file.empty() && !is_importable(options.file) && context.diagnostics.empty())
     section.fault("file",
                   format("is {}, which is no file that can be imported", quote(options.file)),
-                  "Name a .urdf or .xacro file.");
+                  "Name a .urdf, .xacro or MJCF .xml file.");
   return options;
 }
 

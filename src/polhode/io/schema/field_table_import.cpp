@@ -14,7 +14,7 @@ const FieldTable& import_fields() {
       {
           {.name = "file",
            .kind = kText,
-           .meaning = "URDF or xacro file, relative to the folder of this file.",
+           .meaning = "URDF, xacro or MJCF file, relative to the folder of this file.",
            .required = true},
           {.name = "base",
            .kind = kChoice,
@@ -39,6 +39,11 @@ const FieldTable& import_fields() {
           {.name = "friction",
            .kind = kBoolean,
            .meaning = "Whether joints have their dry friction.",
+           .standard = "true"},
+          {.name = "actuators",
+           .kind = kBoolean,
+           .meaning = "Whether actuators are motors and servos, with zero as their set points; "
+                      "URDF has none.",
            .standard = "true"},
           {.name = "allow_partial",
            .kind = kBoolean,

@@ -5,12 +5,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include <polhode/io/importers/urdf_robot.hpp>
+#include <polhode/io/importers/robot.hpp>
 
 namespace polhode::io {
 
 /// The links and joints of a robot as a tree, with its start and the links that form one body.
-struct UrdfTree {
+struct RobotTree {
   int root = -1;
   std::vector<int> order;          ///< Links, parents first.
   std::vector<int> parent_joint;   ///< Of each link; −1: the root.
@@ -27,8 +27,8 @@ struct UrdfTree {
 
 /// Arranges a robot. Errors go to the file's diagnostics, and then the tree is incomplete.
 /// @returns whether there was none.
-[[nodiscard]] bool arrange(const UrdfRobot& robot, const ImportOptions& options, XmlFile& xml,
+[[nodiscard]] bool arrange(const Robot& robot, const ImportOptions& options, XmlFile& xml,
                            Diagnostics& diagnostics, std::vector<ImportNote>& notes,
-                           UrdfTree& tree);
+                           RobotTree& tree);
 
 }  // namespace polhode::io

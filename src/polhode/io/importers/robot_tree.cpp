@@ -1,38 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/io/importers/urdf_tree.hpp>
+#include <polhode/io/importers/robot_tree.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/io/importers/robot_bodies.hpp>
 
 namespace polhode::io {
 
 namespace {
 
-using geometry::MassProperties;
-
-constexpr const char* kPartial = "Give it, or allow a partial import to hold its joint.";
-
-/// Reason why mass properties are no rigid body's; "" if they are.
-std::string unsound(const MassProperties& m) {
-  if (!(m.mass > 0.0)) return "has no mass";
-  if (m.inertia.isZero(0.0)) return "has no inertia";
-  try {
-    geometry::check_mass_properties("", m.mass, m.inertia);
-  } catch (const InputError& error) {
-    return "cannot have its inertia: " + error.what_is_wrong();
-  }
-  return "";
-}
-
 class Arranger {
  public:
-  Arranger(const UrdfRobot& robot, const ImportOptions& options, XmlFile& xml,
-           Diagnostics& diagnostics, std::vector<ImportNote>& notes, UrdfTree& tree)
+  Arranger(const Robot& robot, const ImportOptions& options, XmlFile& xml, Diagnostics& diagnostics,
+           std::vector<ImportNote>& notes, RobotTree& tree)
       : robot_(robot),
         options_(options),
         xml_(xml),
@@ -48,15 +31,15 @@ class Arranger {
     start();
     if (!diagnostics_.empty()) return false;
     place();
-    form_bodies();
+    form_bodies(robot_, options_, xml_, diagnostics_, notes_, tree_);
     return diagnostics_.empty();
   }
 
  private:
-  [[nodiscard]] const UrdfLink& link(int i) const {
+  [[nodiscard]] const RobotLink& link(int i) const {
     return robot_.links[static_cast<std::size_t>(i)];
   }
-  [[nodiscard]] const UrdfJoint& joint(int j) const {
+  [[nodiscard]] const RobotJoint& joint(int j) const {
     return robot_.joints[static_cast<std::size_t>(j)];
   }
   template <class T>
@@ -64,16 +47,20 @@ class Arranger {
     return list[static_cast<std::size_t>(i)];
   }
 
+  template <class T>
+  static const auto& at(const std::vector<T>& list, int i) {
+    return list[static_cast<std::size_t>(i)];
+  }
   static std::vector<bool>::reference at(std::vector<bool>& list, int i) {
     return list[static_cast<std::size_t>(i)];
   }
 
   void connect() {
-    for (const UrdfLink& l : robot_.links)
+    for (const RobotLink& l : robot_.links)
       tree_.link_index.emplace(l.name, static_cast<int>(tree_.link_index.size()));
     tree_.parent_joint.assign(robot_.links.size(), -1);
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
-      const UrdfJoint& joint = robot_.joints[j];
+      const RobotJoint& joint = robot_.joints[j];
       tree_.joint_index.emplace(joint.name, static_cast<int>(j));
       const int parent = find_link(*joint.at, joint.parent);
       const int child = find_link(*joint.at, joint.child);
@@ -102,7 +89,7 @@ class Arranger {
     const auto found = tree_.link_index.find(name);
     if (found != tree_.link_index.end()) return found->second;
     std::vector<std::string> names;
-    for (const UrdfLink& l : robot_.links) names.push_back(l.name);
+    for (const RobotLink& l : robot_.links) names.push_back(l.name);
     xml_.fault(at, format("there is no link {}", quote(name)),
                did_you_mean(name, names) + "Links: " + name_list(names, 12) + ".");
     return -1;
@@ -148,19 +135,20 @@ class Arranger {
   void start() {
     tree_.start.resize(robot_.joints.size());
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
-      const UrdfJoint& joint = robot_.joints[j];
+      const RobotJoint& joint = robot_.joints[j];
       const std::size_t count = joint.is_single()          ? 1
                                 : joint.type == "planar"   ? 3
                                 : joint.type == "floating" ? 6
                                                            : 0;
-      tree_.start[j].assign(count, 0.0);
+      tree_.start[j].assign(count, joint.zero);
       const auto given = options_.start.find(joint.name);
       if (given == options_.start.end()) {
         if (count == 1 && options_.limits) clamp(joint, tree_.start[j][0]);
         continue;
       }
       if (joint.mimic)
-        fault_start(joint.name, "follows another joint by <mimic>", "Give the start of that one.");
+        fault_start(joint.name, format("follows another joint by {}", robot_.follows),
+                    "Give the start of that one.");
       else if (given->second.size() != count)
         fault_start(joint.name,
                     format("has {} coordinates, but {} are given", count, given->second.size()),
@@ -177,7 +165,7 @@ class Arranger {
       }
     }
     std::vector<std::string> names;
-    for (const UrdfJoint& j : robot_.joints) names.push_back(j.name);
+    for (const RobotJoint& j : robot_.joints) names.push_back(j.name);
     for (const auto& [name, values] : options_.start)
       if (!tree_.joint_index.contains(name))
         fault_start(name, "is no joint of the file",
@@ -190,13 +178,13 @@ class Arranger {
                      std::move(hint));
   }
 
-  void clamp(const UrdfJoint& joint, double& q) {
+  void clamp(const RobotJoint& joint, double& q) {
     const double wanted = q;
     q = std::clamp(q, joint.lower.value_or(q), joint.upper.value_or(q));
     if (q != wanted)
-      notes_.push_back(
-          {ImportNote::Kind::approximated, xml_.place(*joint.at),
-           format("the joint {} starts at its limit {}, as 0 is outside", quote(joint.name), q)});
+      notes_.push_back({ImportNote::Kind::approximated, xml_.place(*joint.at),
+                        format("the joint {} starts at its limit {}, as {} is outside",
+                               quote(joint.name), q, wanted)});
   }
 
   /// Starts of joints that follow others; refuses those that follow themselves.
@@ -212,7 +200,8 @@ class Arranger {
         if (leader < 0) return;
         if (at(state, leader) == 1) {
           xml_.fault(*joint(j).mimic->at,
-                     format("the joint {} follows itself by <mimic>", quote(joint(leader).name)),
+                     format("the joint {} follows itself by {}", quote(joint(leader).name),
+                            robot_.follows),
                      "Let one of the joints move freely.");
           return;
         }
@@ -221,18 +210,18 @@ class Arranger {
       for (auto j = way.rbegin(); j != way.rend(); ++j) {
         at(state, *j) = 2;
         if (!joint(*j).mimic) continue;
-        const UrdfMimic& m = *joint(*j).mimic;
+        const RobotMimic& m = *joint(*j).mimic;
         at(tree_.start, *j)[0] = m.multiplier * at(tree_.start, leader_of(*j))[0] + m.offset;
       }
     }
   }
 
   int leader_of(int j) {
-    const UrdfMimic& m = *joint(j).mimic;
+    const RobotMimic& m = *joint(j).mimic;
     const auto found = tree_.joint_index.find(m.joint);
     if (found == tree_.joint_index.end()) {
       std::vector<std::string> names;
-      for (const UrdfJoint& other : robot_.joints) names.push_back(other.name);
+      for (const RobotJoint& other : robot_.joints) names.push_back(other.name);
       xml_.fault(*m.at, format("there is no joint {}", quote(m.joint)),
                  did_you_mean(m.joint, names) + "Joints: " + name_list(names, 12) + ".");
       return -1;
@@ -247,13 +236,13 @@ class Arranger {
 
   /// Frame of the child in that of the parent at the start.
   [[nodiscard]] Pose across(int j) {
-    const UrdfJoint& joint = this->joint(j);
+    const RobotJoint& joint = this->joint(j);
     const std::vector<double>& q = at(tree_.start, j);
     Pose motion;
     if (joint.turns()) {
-      motion.R = Eigen::AngleAxisd(q[0], joint.axis).toRotationMatrix();
+      motion.R = Eigen::AngleAxisd(q[0] - joint.zero, joint.axis).toRotationMatrix();
     } else if (joint.type == "prismatic") {
-      motion.p = q[0] * joint.axis;
+      motion.p = (q[0] - joint.zero) * joint.axis;
     } else if (joint.type == "planar") {
       const Mat3 F = axes_along(joint.axis);
       motion.p = F * Vec3(q[0], q[1], 0.0);
@@ -264,8 +253,9 @@ class Arranger {
                   Eigen::AngleAxisd(q[3], Vec3::UnitX()))
                      .toRotationMatrix();
     }
-    if (std::all_of(q.begin(), q.end(), [](double x) { return x == 0.0; })) return joint.origin;
-    return joint.origin * motion;
+    const bool moved = std::any_of(q.begin(), q.end(), [&](double x) { return x != joint.zero; });
+    const Pose frame = moved ? joint.origin * motion : joint.origin;
+    return joint.on_child.is_identity() ? frame : frame * joint.on_child.inverse();
   }
 
   void place() {
@@ -275,136 +265,18 @@ class Arranger {
         at(tree_.world, i) = at(tree_.world, at(tree_.parent, j)) * across(j);
   }
 
-  [[nodiscard]] bool is_rigid(int j) { return joint(j).type == "fixed" || at(tree_.held, j); }
-
-  /// Which links form one body. Links that are welded stay bodies of their own where they have mass
-  /// and inertia. The joints of links without mass that carry nothing are held, which changes no
-  /// other motion; other links without mass or inertia are refused.
-  void form_bodies() {
-    for (bool again = true; again && diagnostics_.empty();) {
-      group();
-      again = hold_massless();
-    }
-  }
-
-  void group() {
-    const std::size_t n = robot_.links.size();
-    tree_.grounded.assign(n, false);
-    tree_.body.resize(n);
-    std::iota(tree_.body.begin(), tree_.body.end(), 0);
-    tree_.mass.resize(n);
-    for (std::size_t i = 0; i < n; ++i) tree_.mass[i] = robot_.links[i].mass;
-    if (options_.base == "fixed") at(tree_.grounded, tree_.root) = true;
-    for (const int i : tree_.order)
-      if (const int j = at(tree_.parent_joint, i); j >= 0 && is_rigid(j))
-        at(tree_.grounded, i) = at(tree_.grounded, at(tree_.parent, j));
-    // Parents first, so that a chain of links without mass is merged in one pass; links below a
-    // root without mass in the second.
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (const int i : tree_.order) {
-        const int j = at(tree_.parent_joint, i);
-        if (j < 0 || !is_rigid(j)) continue;
-        const int above = body_of(at(tree_.parent, j)), own = body_of(i);
-        if (above == own || !merges(j, above, own)) continue;
-        unite(above, own);
-        changed = true;
-      }
-    }
-    for (const int i : tree_.order) at(tree_.body, i) = body_of(i);
-  }
-
-  /// Whether two bodies that a rigid joint connects become one. Fixed ones need no mass, but one
-  /// whose inertia is no rigid body's would lose it.
-  [[nodiscard]] bool merges(int j, int above, int own) {
-    const auto loses = [&](int i) {
-      const MassProperties& m = at(tree_.mass, i);
-      return !m.inertia.isZero(0.0) && !unsound(m).empty();
-    };
-    if (at(tree_.grounded, own)) return loses(above) || loses(own);
-    return options_.fixed_joints == "merge" || at(tree_.held, j) ||
-           !unsound(at(tree_.mass, own)).empty() || !unsound(at(tree_.mass, above)).empty();
-  }
-
-  int body_of(int i) {
-    while (at(tree_.body, i) != i) i = at(tree_.body, i) = at(tree_.body, at(tree_.body, i));
-    return i;
-  }
-
-  /// Makes one body of two. Its name is that of the upper one, or of the lower one if only that
-  /// has mass.
-  void unite(int above, int own) {
-    const bool lower = at(tree_.mass, above).mass == 0.0 && at(tree_.mass, own).mass > 0.0;
-    const int kept = lower ? own : above, given = lower ? above : own;
-    const Pose between = at(tree_.world, kept).inverse() * at(tree_.world, given);
-    const MassProperties parts[2] = {at(tree_.mass, kept),
-                                     geometry::placed(at(tree_.mass, given), between.p, between.R)};
-    if (parts[0].mass == 0.0 || parts[1].mass == 0.0) {
-      MassProperties& whole = at(tree_.mass, kept);
-      if (parts[0].mass == 0.0) whole = parts[1];
-      whole.inertia = parts[0].inertia + parts[1].inertia;
-    } else {
-      at(tree_.mass, kept) = geometry::composed(parts);
-    }
-    at(tree_.body, given) = kept;
-  }
-
-  /// Holds joints of links that have no mass. @returns whether there are new ones.
-  bool hold_massless() {
-    std::vector<bool> carries(robot_.links.size(), false);  // By body: a joint below it.
-    std::vector<int> top(robot_.links.size(), -1);          // By body: its uppermost joint.
-    for (const int i : tree_.order) {
-      const int j = at(tree_.parent_joint, i);
-      if (j < 0) continue;
-      const int own = at(tree_.body, i), above = at(tree_.body, at(tree_.parent, j));
-      if (own == above) continue;
-      at(carries, above) = true;
-      if (at(top, own) < 0) at(top, own) = j;
-    }
-    for (const UrdfLoop& loop : robot_.loops)
-      for (const std::string& name : loop.links)
-        if (const auto found = tree_.link_index.find(name); found != tree_.link_index.end())
-          at(carries, at(tree_.body, found->second)) = true;
-    bool again = false;
-    for (const int i : tree_.order) {
-      if (at(tree_.body, i) != i || at(tree_.grounded, i)) continue;
-      const MassProperties& mass = at(tree_.mass, i);
-      const std::string reason = unsound(mass);
-      if (reason.empty()) continue;
-      const int j = at(top, i);
-      const bool empty = mass.mass == 0.0 && mass.inertia.isZero(0.0) && !at(carries, i);
-      if (j >= 0 && (empty || options_.allow_partial)) {
-        at(tree_.held, j) = true;
-        again = true;
-        notes_.push_back({empty ? ImportNote::Kind::approximated : ImportNote::Kind::left_out,
-                          xml_.place(*link(i).at),
-                          format("the link {} {}: its joint {} is held{}", quote(link(i).name),
-                                 empty ? "has no mass" : reason, quote(joint(j).name),
-                                 empty ? ", which changes no other motion" : "")});
-        continue;
-      }
-      xml_.fault(
-          *link(i).at,
-          format(
-              "the link {} {}{}", quote(link(i).name), reason,
-              j >= 0 && at(carries, i) && mass.mass == 0.0 ? ", but moves between two joints" : ""),
-          j >= 0 ? kPartial : "Give it, or let the base be fixed.");
-    }
-    return again;
-  }
-
-  const UrdfRobot& robot_;
+  const Robot& robot_;
   const ImportOptions& options_;
   XmlFile& xml_;
   Diagnostics& diagnostics_;
   std::vector<ImportNote>& notes_;
-  UrdfTree& tree_;
+  RobotTree& tree_;
 };
 
 }  // namespace
 
-bool arrange(const UrdfRobot& robot, const ImportOptions& options, XmlFile& xml,
-             Diagnostics& diagnostics, std::vector<ImportNote>& notes, UrdfTree& tree) {
+bool arrange(const Robot& robot, const ImportOptions& options, XmlFile& xml,
+             Diagnostics& diagnostics, std::vector<ImportNote>& notes, RobotTree& tree) {
   return Arranger(robot, options, xml, diagnostics, notes, tree).arrange();
 }
 

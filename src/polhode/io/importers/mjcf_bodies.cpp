@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/mjcf_bodies.hpp>
+
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+
+namespace polhode::io {
+
+using geometry::MassProperties;
+
+void MjcfRefusals::add(const XmlFile::Element& at, const std::string& what,
+                       const std::string& hint) {
+  if (partial_)
+    file_.notes.push_back({ImportNote::Kind::left_out, file_.xml.place(at), what});
+  else
+    file_.xml.fault(at, what, hint + " Or allow a partial import.");
+}
+
+int MjcfBodies::add_link(const std::string& name, const Element& at) {
+  std::string chosen = name;
+  for (int k = 2; frames_.contains(chosen); ++k) chosen = format("{}_{}", name, k);
+  RobotLink link;
+  link.name = chosen;
+  link.at = &at;
+  robot_.links.push_back(std::move(link));
+  frames_[chosen];
+  return static_cast<int>(robot_.links.size()) - 1;
+}
+
+void MjcfBodies::read() {
+  const Element& root = file_.xml.root();
+  const int world = add_link("world", root);
+  std::vector<MassProperties> parts;
+  for (const Element* e : file_.sections("worldbody"))
+    read_content(*e, {"world", world, {}, file_.xml.text(*e, "childclass").value_or("")}, parts,
+                 false);
+  double sum = 0.0;
+  for (const RobotLink& link : robot_.links) sum += link.mass.mass;
+  if (file_.compiler.total_mass <= 0.0 || sum == 0.0) return;
+  for (RobotLink& link : robot_.links) {
+    link.mass.mass *= file_.compiler.total_mass / sum;
+    link.mass.inertia *= file_.compiler.total_mass / sum;
+  }
+}
+
+void MjcfBodies::read_content(const Element& e, const Place& place,
+                              std::vector<MassProperties>& parts, bool massive) {
+  XmlFile& xml = file_.xml;
+  for (const Element* inner = e.FirstChildElement(); inner != nullptr;
+       inner = inner->NextSiblingElement()) {
+    const std::string_view name = inner->Name();
+    if (name == "geom") {
+      static_cast<void>(xml.children(e, "geom"));
+      const MjcfGeom geom =
+          geoms_.read({file_, *inner, {"geom"}, place.child_class}, place.frame, massive);
+      if (geom.mass) parts.push_back(*geom.mass);
+      RobotLink& link = robot_.links[static_cast<std::size_t>(place.body)];
+      const bool plane = geom.shape && geom.shape->kind == "plane";
+      if (plane && place.link != "world") {
+        file_.ignored.add(*inner, "a plane on a body that moves", "is not read");
+        continue;
+      }
+      if (geom.shape && geom.seen) link.visual.push_back(*geom.shape);
+      if (geom.shape && geom.touches) link.collision.push_back(*geom.shape);
+    } else if (name == "site") {
+      const MjcfTag tag{file_, *inner, {"site"}, place.child_class};
+      Pose frame = tag.pose();
+      if (const auto ends = tag.numbers("fromto", 6, 6); !ends.empty())
+        frame.p = 0.5 * Vec3(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
+      if (const auto site = xml.text(*inner, "name"))
+        sites_[*site] = {place.link, place.frame * frame};
+      xml.skip(*inner);
+    } else if (name == "frame") {
+      static_cast<void>(xml.children(e, "frame"));
+      const MjcfTag tag{file_, *inner, {}, ""};
+      file_.ignored.attributes(*inner, {"name"});
+      read_content(*inner,
+                   {place.link, place.body, place.frame * tag.pose(),
+                    xml.text(*inner, "childclass").value_or(place.child_class)},
+                   parts, massive);
+    } else if (name == "body") {
+      static_cast<void>(xml.children(e, "body"));
+      read_body(*inner, place);
+    } else if (name == "composite" || name == "flexcomp" || name == "replicate" ||
+               name == "attach" || name == "plugin") {
+      xml.skip(*inner);
+      refusals_.add(*inner, format("<{}> is not read", name),
+                    "Let MuJoCo save the model, which expands some of these.");
+    }
+  }
+  file_.ignored.skip(e, {"camera", "light"});
+}
+
+MassProperties MjcfBodies::inertial(const Element& e) {
+  XmlFile& xml = file_.xml;
+  const MjcfTag tag{file_, e, {}, ""};
+  MassProperties mass;
+  mass.mass = xml.number(e, "mass").value_or(0.0);
+  if (e.Attribute("mass") == nullptr)
+    xml.fault(e, "<inertial> has no 'mass'", "Write <inertial pos=\"...\" mass=\"...\"/>.");
+  if (mass.mass < 0.0)
+    xml.fault(e, format("the mass is {}", mass.mass), "Give a mass that is not negative.");
+  mass.com = tag.vector("pos", Vec3::Zero());
+  Mat3 J = Mat3::Zero();
+  if (const auto all = xml.numbers(e, "fullinertia", 6, 6)) {
+    J.diagonal() << (*all)[0], (*all)[1], (*all)[2];
+    J(0, 1) = J(1, 0) = (*all)[3];
+    J(0, 2) = J(2, 0) = (*all)[4];
+    J(1, 2) = J(2, 1) = (*all)[5];
+  } else if (const auto diagonal = xml.vector(e, "diaginertia")) {
+    J.diagonal() = *diagonal;
+  }
+  const Mat3 R = tag.rotation();
+  const Mat3 turned = R * J * R.transpose();
+  mass.inertia = 0.5 * (turned + turned.transpose());
+  return mass;
+}
+
+void MjcfBodies::bound(MassProperties& mass) const {
+  const MjcfCompiler& c = file_.compiler;
+  if (c.least_mass > 0.0) mass.mass = std::max(mass.mass, c.least_mass);
+  if (c.least_inertia <= 0.0 && !c.balance) return;
+  geometry::PrincipalAxes p = geometry::principal_axes(mass.inertia);
+  p.moments = p.moments.cwiseMax(c.least_inertia);
+  if (c.balance && p.moments[0] + p.moments[1] < p.moments[2])
+    p.moments.setConstant(p.moments.mean());
+  mass.inertia = p.axes * p.moments.asDiagonal() * p.axes.transpose();
+}
+
+void MjcfBodies::read_body(const Element& e, const Place& parent) {
+  XmlFile& xml = file_.xml;
+  const std::string given = xml.text(e, "name").value_or("");
+  const std::string child_class = xml.text(e, "childclass").value_or(parent.child_class);
+  file_.ignored.attributes(e, {"user", "sleep"});
+  if (!given.empty() && frames_.contains(given))
+    xml.fault(e, format("the body {} stands twice", quote(given)), "Rename one of them.");
+  const std::string name = given.empty() ? format("body_{}", robot_.links.size()) : given;
+  if (xml.number(e, "gravcomp").value_or(0.0) != 0.0)
+    refusals_.add(e, format("gravity is compensated at {}", quote(name)),
+                  "Leave 'gravcomp' out, and add a force.");
+  if (xml.text(e, "mocap").value_or("false") == "true")
+    file_.notes.push_back({ImportNote::Kind::approximated, xml.place(e),
+                           format("the mocap body {} is fixed", quote(name))});
+  const Pose pose = parent.frame * MjcfTag{file_, e, {}, ""}.pose();
+
+  std::vector<const Element*> joints;
+  for (const Element* inner = e.FirstChildElement(); inner != nullptr;
+       inner = inner->NextSiblingElement())
+    if (const std::string_view tag = inner->Name(); tag == "joint" || tag == "freejoint")
+      joints.push_back(inner);
+  static_cast<void>(xml.children(e, "joint"));
+  static_cast<void>(xml.children(e, "freejoint"));
+
+  std::string above = parent.link;
+  const Pose here = frames_.at(parent.link) * pose;
+  int body = -1;
+  for (std::size_t k = 0; k < std::max<std::size_t>(1, joints.size()); ++k) {
+    RobotJoint joint;
+    joint.at = joints.empty() ? &e : joints[k];
+    joint.name = joints.empty()
+                     ? name + "_weld"
+                     : xml.text(*joints[k], "name")
+                           .value_or(joints.size() == 1 ? name + "_joint"
+                                                        : format("{}_joint_{}", name, k + 1));
+    while (!joint_names_.insert(joint.name).second) joint.name += "_2";
+    joint.type = "fixed";
+    joint.origin = k == 0 ? pose : Pose{};
+    if (!joints.empty()) read_joint({file_, *joints[k], {"joint"}, child_class}, joint);
+    if (joint.type == "floating" && (parent.link != "world" || joints.size() > 1))
+      xml.fault(
+          *joint.at,
+          format("the free joint {} is not the only one of a body of the world", quote(joint.name)),
+          "Only bodies of the world can move freely.");
+    const bool last = k + 1 >= joints.size();
+    body = add_link(last ? name : name + "_" + joint.name, e);
+    robot_.links[static_cast<std::size_t>(body)].name_in_file = last;
+    joint.parent = above;
+    joint.child = above = robot_.links[static_cast<std::size_t>(body)].name;
+    frames_[above] = here;
+    robot_.joints.push_back(std::move(joint));
+  }
+  const Element* given_mass = xml.child(e, "inertial");
+  const auto how = file_.compiler.inertia;
+  const bool from_geoms = how == MjcfCompiler::FromGeoms::always ||
+                          (how == MjcfCompiler::FromGeoms::automatic && given_mass == nullptr);
+  std::vector<MassProperties> parts;
+  read_content(e, {above, body, {}, child_class}, parts, from_geoms);
+  MassProperties mass;
+  if (given_mass != nullptr) mass = inertial(*given_mass);
+  if (from_geoms && !parts.empty()) mass = geometry::composed(parts);
+  bound(mass);
+  robot_.links[static_cast<std::size_t>(body)].mass = mass;
+  robot_.links[static_cast<std::size_t>(body)].has_inertial = mass.mass > 0.0;
+}
+
+void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
+  file_.ignored.attributes(tag.e, {"group", "user", "solreflimit", "solimplimit", "solreffriction",
+                                   "solimpfriction", "margin", "actuatorgravcomp", "align",
+                                   "springdamper", "actuatorfrcrange", "actuatorfrclimited"});
+  if (std::string_view(tag.e.Name()) == "freejoint") {
+    joint.type = "floating";
+    return;
+  }
+  const std::string type = tag.text("type", "hinge");
+  static const std::map<std::string, std::string> types{
+      {"hinge", "revolute"}, {"slide", "prismatic"}, {"ball", "spherical"}, {"free", "floating"}};
+  const auto found = types.find(type);
+  if (found == types.end()) {
+    file_.xml.fault(tag.e,
+                    format("the joint {} has the unknown type {}", quote(joint.name), quote(type)),
+                    "Types: hinge, slide, ball, free.");
+    return;
+  }
+  joint.type = found->second;
+  if (tag.numbers("springdamper", 2, 2).size() == 2)
+    refusals_.add(tag.e, format("the joint {} has a 'springdamper'", quote(joint.name)),
+                  "Give stiffness and damping.");
+  const auto effort = [&](const char* attribute) {
+    const std::vector<double> list = tag.numbers(attribute, 1, 8);
+    for (std::size_t k = 1; k < list.size(); ++k)
+      if (list[k] != 0.0)
+        refusals_.add(tag.e, format("'{}' of {} is a polynomial", attribute, quote(joint.name)),
+                      "Give one number.");
+    if (list.empty()) return 0.0;
+    if (list[0] < 0.0)
+      file_.xml.fault(tag.e, format("'{}' of {} is {}", attribute, quote(joint.name), list[0]),
+                      "Give a value that is not negative.");
+    return list[0];
+  };
+  joint.damping = effort("damping");
+  joint.stiffness = effort("stiffness");
+  joint.friction = effort("frictionloss");
+  joint.armature = effort("armature");
+  if (joint.type == "floating") {
+    if (joint.stiffness != 0.0 || joint.armature != 0.0 ||
+        (joint.friction != 0.0 && options_.friction))
+      refusals_.add(
+          tag.e,
+          format("the free joint {} has a stiffness, friction or armature", quote(joint.name)),
+          "Leave it out, or use a <freejoint>, which has none.");
+    return;
+  }
+  const Pose at{tag.vector("pos", Vec3::Zero()), Mat3::Identity()};
+  joint.origin = joint.origin * at;
+  joint.on_child = at;
+  if (joint.type == "spherical") {
+    read_ball(tag, joint);
+    return;
+  }
+  const Vec3 axis = tag.vector("axis", Vec3::UnitZ());
+  if (axis.norm() > 0.0)
+    joint.axis = axis.normalized();
+  else
+    file_.xml.fault(tag.e, format("the axis of {} has no length", quote(joint.name)),
+                    "Give a direction, such as axis=\"0 0 1\".");
+  const auto coordinate = [&](const char* attribute) {
+    const double value = tag.number(attribute, 0.0);
+    return joint.turns() ? file_.angle(value) : value;
+  };
+  joint.zero = coordinate("ref");
+  joint.rest = coordinate("springref");
+  read_limits(tag, joint);
+}
+
+void MjcfBodies::read_limits(const MjcfTag& tag, RobotJoint& joint) {
+  const std::vector<double> range = tag.numbers("range", 2, 2);
+  const bool limited = tag.boolean("limited", file_.compiler.auto_limits && !range.empty());
+  if (!limited || range.empty()) return;
+  const double low = joint.turns() ? file_.angle(range[0]) : range[0];
+  const double high = joint.turns() ? file_.angle(range[1]) : range[1];
+  if (low < high) {
+    joint.lower = low;
+    joint.upper = high;
+  } else {
+    file_.xml.fault(tag.e,
+                    format("the joint {} has the limits {} to {}", quote(joint.name), low, high),
+                    "Give a lower limit below the upper one.");
+  }
+}
+
+void MjcfBodies::read_ball(const MjcfTag& tag, RobotJoint& joint) {
+  const auto refuse = [&](bool is, const char* what) {
+    if (is)
+      refusals_.add(tag.e, format("the ball joint {} has {}", quote(joint.name), what),
+                    "Use hinges one after the other.");
+  };
+  refuse(joint.stiffness != 0.0, "a stiffness");
+  refuse(joint.armature != 0.0, "an armature");
+  refuse(joint.friction != 0.0 && options_.friction, "a friction loss");
+  refuse(options_.limits && !tag.numbers("range", 2, 2).empty() &&
+             tag.boolean("limited", file_.compiler.auto_limits),
+         "a limit");
+  joint.stiffness = joint.armature = joint.friction = 0.0;
+}
+
+}  // namespace polhode::io

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <polhode/io/importers/mjcf_geom.hpp>
+
+namespace polhode::io {
+
+/// What a part of the model cannot represent: an error, or a note where partial imports are
+/// allowed.
+class MjcfRefusals {
+ public:
+  MjcfRefusals(MjcfFile& file, bool allow_partial) : file_(file), partial_(allow_partial) {}
+  void add(const XmlFile::Element& at, const std::string& what, const std::string& hint);
+
+ private:
+  MjcfFile& file_;
+  bool partial_;
+};
+
+/// Reader of the tree of bodies. Each joint of a body moves a link of its own, all but the last one
+/// without mass: joints act one after the other, as in MuJoCo.
+class MjcfBodies {
+ public:
+  MjcfBodies(MjcfFile& file, MjcfGeoms& geoms, MjcfRefusals& refusals, const ImportOptions& options,
+             Robot& robot)
+      : file_(file), geoms_(geoms), refusals_(refusals), options_(options), robot_(robot) {}
+
+  /// Reads all <worldbody> sections.
+  void read();
+
+  /// Frame of a link at the model's configuration, in the world.
+  [[nodiscard]] const std::map<std::string, Pose>& frames() const { return frames_; }
+  /// Frames of sites, and the links that they are on.
+  struct Site {
+    std::string link;
+    Pose frame;
+  };
+  [[nodiscard]] const std::map<std::string, Site>& sites() const { return sites_; }
+
+ private:
+  using Element = XmlFile::Element;
+  /// A body, or a <frame> in it, while its content is read.
+  struct Place {
+    std::string link;
+    int body;    ///< Index of the link.
+    Pose frame;  ///< Of the tag in the coordinates of the link.
+    std::string child_class;
+  };
+  [[nodiscard]] int add_link(const std::string& name, const Element& at);
+  void read_content(const Element& e, const Place& place,
+                    std::vector<geometry::MassProperties>& parts, bool massive);
+  void read_body(const Element& e, const Place& parent);
+  void read_joint(const MjcfTag& tag, RobotJoint& joint);
+  void read_limits(const MjcfTag& tag, RobotJoint& joint);
+  void read_ball(const MjcfTag& tag, RobotJoint& joint);
+  [[nodiscard]] geometry::MassProperties inertial(const Element& e);
+  void bound(geometry::MassProperties& mass) const;
+
+  MjcfFile& file_;
+  MjcfGeoms& geoms_;
+  MjcfRefusals& refusals_;
+  const ImportOptions& options_;
+  Robot& robot_;
+  std::map<std::string, Pose> frames_;
+  std::map<std::string, Site> sites_;
+  std::set<std::string> joint_names_;
+};
+
+}  // namespace polhode::io

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include <polhode/io/importers/mjcf_file.hpp>
+
+namespace polhode::io {
+
+/// A <geom>: its shape, and the mass that it has.
+struct MjcfGeom {
+  std::optional<RobotShape> shape;  ///< In the body's coordinates; none for what is not a shape.
+  bool seen = true;                 ///< In a group that is shown by default.
+  bool touches = true;              ///< Whether it takes part in contact.
+  std::optional<geometry::MassProperties> mass;  ///< In the body's coordinates.
+};
+
+/// The geoms of an MJCF file, and the meshes that they use.
+class MjcfGeoms {
+ public:
+  /// @param folder  Folder of the file.
+  MjcfGeoms(MjcfFile& file, const std::string& folder);
+
+  /// @param frame  Frame of the tag's coordinates in the body's.
+  /// @param massive  Whether its mass is needed: that of a shape which has none is then an error.
+  [[nodiscard]] MjcfGeom read(const MjcfTag& tag, const Pose& frame, bool massive);
+
+ private:
+  struct Mesh {
+    const XmlFile::Element* at;
+    std::string file;
+    Vec3 scale;
+    std::string inertia;  ///< How its mass properties are found.
+  };
+  [[nodiscard]] geometry::MassProperties mass_of_mesh(const Mesh& mesh);
+
+  MjcfFile& file_;
+  std::string folder_;
+  std::map<std::string, Mesh> meshes_;
+};
+
+}  // namespace polhode::io

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/core/types.hpp>
+#include <polhode/geometry/mass_properties.hpp>
+#include <polhode/io/importers/import_model.hpp>
+#include <polhode/io/importers/xml_file.hpp>
+
+namespace polhode::io {
+
+/// A frame in the coordinates of another one.
+struct Pose {
+  Vec3 p = Vec3::Zero();  ///< Origin [m].
+  Mat3 R = Mat3::Identity();
+
+  [[nodiscard]] Pose operator*(const Pose& inner) const { return {p + R * inner.p, R * inner.R}; }
+  [[nodiscard]] Vec3 operator*(const Vec3& point) const { return p + R * point; }
+  [[nodiscard]] bool is_identity() const { return p.isZero(0.0) && R.isIdentity(0.0); }
+  [[nodiscard]] Pose inverse() const { return {-(R.transpose() * p), R.transpose()}; }
+};
+
+/// A shape of a link.
+struct RobotShape {
+  const XmlFile::Element* at = nullptr;
+  Pose pose;
+  std::string kind;           ///< box, sphere, cylinder, capsule, ellipsoid, mesh, plane.
+  std::vector<double> sizes;  ///< As in a model file: full lengths [m].
+  std::string file;           ///< Of a mesh, as written.
+  Vec3 scale = Vec3::Ones();  ///< Of a mesh.
+};
+
+struct RobotLink {
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  bool has_inertial = false;
+  bool name_in_file = true;       ///< Not one that stands between the joints of a body.
+  geometry::MassProperties mass;  ///< In the link's axes; zero if it has none.
+  std::vector<RobotShape> visual, collision;
+};
+
+/// Coordinate that follows another one: multiplier times it plus an offset.
+struct RobotMimic {
+  const XmlFile::Element* at = nullptr;
+  std::string joint;
+  double multiplier = 1.0, offset = 0.0;
+};
+
+/// A joint between two links. Its frames on the two coincide where its coordinate is `zero`.
+struct RobotJoint {
+  std::string name;
+  std::string type;  ///< revolute, continuous, prismatic, planar, spherical, floating, fixed.
+  std::string parent, child;
+  const XmlFile::Element* at = nullptr;
+  Pose origin, on_child;      ///< Its frame in the coordinates of the parent, and of the child.
+  Vec3 axis = Vec3::UnitX();  ///< Unit vector in the joint's frame.
+  double zero = 0.0;          ///< Also its start, unless another one is given [rad, m].
+  std::optional<double> lower, upper;
+  double damping = 0.0, friction = 0.0, stiffness = 0.0;
+  double rest = 0.0;      ///< Coordinate without force of the spring [rad, m].
+  double armature = 0.0;  ///< Inertance [kg m², kg].
+  std::optional<RobotMimic> mimic;
+
+  [[nodiscard]] bool turns() const { return type == "revolute" || type == "continuous"; }
+  /// Whether it has one coordinate.
+  [[nodiscard]] bool is_single() const { return turns() || type == "prismatic"; }
+};
+
+/// A joint between links that closes a loop: <loop_joint>, <loop>.
+struct RobotLoop {
+  std::string name, type;
+  const XmlFile::Element* at = nullptr;
+  std::string links[2];
+  Pose frames[2];  ///< In the links' coordinates.
+  Vec3 axis = Vec3::UnitX();
+};
+
+/// A row between coordinates: the sum of factors times coordinates is constant.
+struct RobotRow {
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  std::vector<std::string> joints;
+  std::vector<double> factors;  ///< Of each; the first one is not zero.
+  double sum = 0.0;             ///< [rad, m]
+};
+
+/// A motor or servo of a joint with one coordinate, with zero as its set point.
+struct RobotActuator {
+  enum class Kind : unsigned char {
+    effort,   ///< Moment or force.
+    place,    ///< Angle or displacement, by a servo.
+    velocity  ///< Rate, by a servo.
+  };
+  std::string name, joint;
+  const XmlFile::Element* at = nullptr;
+  Kind kind = Kind::effort;
+  double stiffness = 0.0, damping = 0.0;  ///< Of a servo.
+  std::optional<double> most;             ///< Largest effort of a servo [N m, N].
+};
+
+/// A robot as its file describes it, checked one by one but not as a tree.
+struct Robot {
+  std::string name;
+  std::string follows = "<mimic>";  ///< Tag by which joints follow others, for messages.
+  Vec3 gravity{0.0, 0.0, -9.81};    ///< [m/s²]
+  std::vector<RobotRow> rows;
+  std::vector<RobotActuator> actuators;
+  std::vector<RobotLink> links;
+  std::vector<RobotJoint> joints;
+  std::vector<RobotLoop> loops;
+};
+
+/// Axes with this z, and as x the world axis most nearly normal to it, made normal.
+[[nodiscard]] Mat3 axes_along(const Vec3& z);
+
+}  // namespace polhode::io

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/io/importers/node_builder.hpp>
+#include <polhode/io/importers/robot.hpp>
+
+namespace polhode::io {
+
+/// Adds the spring, damper and inerter of a joint with one coordinate to the loads of a model.
+/// @param name   Of the joint in the model.
+/// @param turns  Angle that the model does not count [rad].
+void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
+                     double turns, SourceNode& loads);
+
+/// Adds the damper of a ball joint, which resists the relative angular velocity in all directions.
+/// @param node  The joint in the model.
+void put_ball_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
+                    const SourceNode& node, SourceNode& loads);
+
+/// Adds the damper of a body that moves freely: it resists the velocity of a point and the angular
+/// velocity.
+/// @param point, in_body  The point in the world and in the body's coordinates.
+void put_free_damping(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
+                      const std::string& body, const Vec3& point, const Vec3& in_body,
+                      SourceNode& loads);
+
+/// The motor or servo of a joint with one coordinate.
+/// @param name  Of the joint in the model.
+[[nodiscard]] SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
+                                       const RobotJoint& joint, const std::string& name);
+
+}  // namespace polhode::io

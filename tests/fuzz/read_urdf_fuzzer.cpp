@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fuzz/robot_fuzzer.hpp>
+#include <polhode/io/importers/urdf.hpp>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return polhode::fuzz::import_bytes(
+      data, size, "robot.urdf", [](auto source, const auto& options) {
+        return polhode::io::import_urdf(std::move(source), options, "");
+      });
+}
