@@ -440,6 +440,8 @@ TEST_F(Mjcf, BodiesAndJointsThatCannotBeReadAreNamed) {
               HasSubstr("the mass of <geom> is in its shell"));
   EXPECT_THAT(body_fault("<body><joint/><geom size='1' density='-1'/></body>"),
               HasSubstr("the mass of <geom> is negative"));
+  EXPECT_THAT(body_fault("<body><joint/><geom type='capsule' size='1e308 1e308'/></body>"),
+              HasSubstr("the mass of <geom> cannot be computed: the size 'diameter'"));
   EXPECT_THAT(body_fault("<composite/>"), HasSubstr("<composite> is not read"));
   EXPECT_THAT(fault("<default><default><geom/></default></default>"),
               HasSubstr("a nested <default> has no 'class'"));

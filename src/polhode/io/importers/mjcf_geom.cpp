@@ -193,13 +193,19 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   }
   geom.shape = shape;
   if (!massive) return geom;
-  const double volume = kind->unit_mass_properties(shape.sizes).mass;
-  const double rho = density(volume);
-  if (rho < 0.0)
+  const double rho = density(kind->unit_mass_properties(shape.sizes).mass);
+  if (rho == 0.0) return geom;
+  if (rho < 0.0) {
     xml.fault(e, "the mass of <geom> is negative", "Give a mass that is not.");
-  else if (rho > 0.0)
-    geom.mass = geometry::placed(geometry::shape_mass_properties("geom", *kind, shape.sizes, rho),
-                                 shape.pose.p, shape.pose.R);
+    return geom;
+  }
+  try {
+    const MassProperties own = geometry::shape_mass_properties("geom", *kind, shape.sizes, rho);
+    geom.mass = geometry::placed(own, shape.pose.p, shape.pose.R);
+  } catch (const InputError& error) {  // Numbers that overflow.
+    xml.fault(e, "the mass of <geom> cannot be computed: " + error.what_is_wrong(),
+              "Give another size, or a density that is finite.");
+  }
   return geom;
 }
 
