@@ -16,6 +16,7 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "model_counts.hpp"
 #include "run_report.hpp"
 
 namespace polhode::cli {
@@ -293,7 +294,7 @@ int check(const CheckOptions& options) {
   if (options.json) {
     nlohmann::ordered_json json = {{"valid", impossible.empty()},
                                    {"bodies", simulation.model().bodies.size()},
-                                   {"moving_bodies", simulation.system().body_count()},
+                                   {"moving_bodies", moving_bodies(simulation.model())},
                                    {"joints", simulation.model().joints.size()},
                                    {"loads", simulation.model().loads.size()},
                                    {"solids", solids_json(simulation)},
@@ -323,7 +324,7 @@ int check(const CheckOptions& options) {
   } else {
     std::vector<std::vector<std::string>> rows{
         {"bodies", format("{}", simulation.model().bodies.size()),
-         format("{} of them move", simulation.system().body_count())},
+         format("{} of them move", moving_bodies(simulation.model()))},
         {"joints", format("{}", simulation.model().joints.size())},
         {"loads", format("{}", simulation.model().loads.size())},
         {"mobility", format("{}", rank.mobility),

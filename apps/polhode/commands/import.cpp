@@ -13,6 +13,7 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "model_counts.hpp"
 #include "run_report.hpp"
 
 namespace polhode::cli {
@@ -43,7 +44,7 @@ nlohmann::ordered_json report_json(const io::ImportReport& report, const Simulat
   return {{"format", report.format},
           {"file", report.file},
           {"bodies", simulation.model().bodies.size()},
-          {"moving_bodies", simulation.system().body_count()},
+          {"moving_bodies", moving_bodies(simulation.model())},
           {"joints", simulation.model().joints.size()},
           {"loops", loop_count(simulation.model())},
           {"freedoms", rank.mobility},
@@ -69,7 +70,7 @@ std::string report_text(const io::ImportReport& report, const Simulation& simula
   std::string text =
       table({{"format", report.format},
              {"bodies", format("{}", simulation.model().bodies.size()),
-              format("{} of them move", simulation.system().body_count())},
+              format("{} of them move", moving_bodies(simulation.model()))},
              {"joints", format("{}", simulation.model().joints.size()),
               counted(static_cast<std::size_t>(loop_count(simulation.model())), "loop", "loops")},
              {"freedoms", format("{}", rank.mobility), "independent motions at the start"},

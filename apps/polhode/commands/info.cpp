@@ -16,6 +16,7 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "model_counts.hpp"
 #include "run_report.hpp"
 
 namespace polhode::cli {
@@ -154,7 +155,7 @@ std::string describe(const Simulation& simulation) {
   std::string text =
       table({{"title", model.title},
              {"gravity", numbers(model.gravity) + " m/s^2"},
-             {"moving bodies", format("{}", simulation.system().body_count()),
+             {"moving bodies", format("{}", moving_bodies(simulation.model())),
               format("{:.6g} kg together", mass)},
              {"constraint rows", format("{}", simulation.system().rows())},
              {"contact", contact_text(simulation)},
@@ -245,7 +246,7 @@ std::string describe_json(const Simulation& simulation) {
   for (const CableLineSpec& cable : model.cables)
     cables.push_back({{"name", cable.name}, {"pieces", cable.pieces.size()}});
   const nlohmann::ordered_json json = {{"title", model.title},
-                                       {"moving_bodies", simulation.system().body_count()},
+                                       {"moving_bodies", moving_bodies(simulation.model())},
                                        {"constraint_rows", simulation.system().rows()},
                                        {"solver", summary.solver},
                                        {"instruction_set", summary.instruction_set},
