@@ -116,6 +116,19 @@ analysis: {type: statics, load_steps: 4}
   EXPECT_EQ(run({"run", "hung.yaml", "--json"}).code, 0);
 }
 
+TEST_F(CommandLine, StopsInModesAtTheWallLimit) {
+  write("hung.yaml", R"(format: 1
+bodies: {weight: {mass: 2, inertia: [1, 1, 1], position: [0, 0, -1]}}
+joints: {guide: {type: prismatic, bodies: [ground, weight], at: [0, 0, 0], axis: z}}
+loads: {spring: {type: translational_spring, joint: guide, stiffness: 400 N/m}}
+analysis: {type: modes, about: start}
+)");
+  const auto stopped = run({"modes", "hung.yaml", "--wall-limit", "0"});
+  EXPECT_EQ(stopped.code, 75) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("Stopped before modes were computed"));
+  EXPECT_EQ(run({"modes", "hung.yaml"}).code, 0);
+}
+
 TEST_F(CommandLine, EndsWith4AndNamesAnUnsupportedBody) {
   write("stone.yaml", R"(format: 1
 gravity: [0, 0, -10]

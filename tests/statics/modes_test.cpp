@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -127,6 +128,18 @@ TEST(Modes, LanczosAndDenseSolutionsAgreeAndCountTheirModes) {
                 1e-8 * dense.modes[i].frequency);
     EXPECT_LT(sparse.modes[i].residual, 1e-6);
   }
+}
+
+TEST(Modes, AreNoLongerSoughtWhenTheyAreStopped) {
+  const System system = hanging_lattice(20);
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(
+      {
+        const ModesReport report =
+            find_modes(system, system.initial_state(), {.count = 16, .stop = &stop});
+        static_cast<void>(report);
+      },
+      ModesStopped);
 }
 
 TEST(Modes, ShapesOfNodesFollowTheBodiesTheyAreBondedTo) {

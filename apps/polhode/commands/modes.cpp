@@ -26,6 +26,7 @@ struct ModesOptions {
   std::string folder, about;
   io::SpinText spin;
   int count = 0;
+  std::optional<double> wall_limit;
   bool json = false, quiet = false;
 };
 
@@ -41,6 +42,7 @@ int modes(const ModesOptions& options) {
   if (options.count > 0) model.analysis.count = options.count;
   if (!options.about.empty()) model.analysis.about = options.about;
   io::set_spin(quoted(options.spin), model.analysis);
+  if (options.wall_limit) stop_after(*options.wall_limit);
   return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
 }
 
@@ -247,6 +249,7 @@ Action add_modes(CLI::App& command) {
                   "Whether the ground stands, or turns with the model; left out: "
                   "analysis.spin_ground")
       ->check(CLI::IsMember({"stands", "turns"}));
+  add_wall_limit(command, options->wall_limit, "with exit code 75");
   command.add_flag("--json", options->json, "Print frequencies as one JSON object");
   command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] { return modes(*options); };

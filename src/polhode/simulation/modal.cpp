@@ -159,10 +159,16 @@ ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
     if (summary.end != RunEnd::finished) message_ = summary.message;
     state = simulation_->state();
   }
-  if (message_.empty() && stop && stop->load())
-    message_ = "Stopped before modes were computed. Allow more time, or ask for fewer modes";
+  const char* stopped =
+      "Stopped before modes were computed. Allow more time, or ask for fewer modes";
+  if (message_.empty() && stop && stop->load()) message_ = stopped;
   if (message_.empty()) {
-    report_ = find_modes(simulation_->system(), state, options);
+    options.stop = stop;
+    try {
+      report_ = find_modes(simulation_->system(), state, options);
+    } catch (const ModesStopped&) {
+      message_ = stopped;
+    }
     if (analysis.about == "start" && report_.unbalanced > kUnbalanced)
       report_.warnings.push_back(format(
           "the start is no equilibrium: {:.2g} of the largest force is unbalanced; use about: "

@@ -51,6 +51,7 @@ std::vector<double> diagonal_ratios(const SaddleMatrix& K, double s, const Saddl
 
 ModalMatrices::ModalMatrices(const System& system, const State& state, const ModeOptions& options)
     : system_(system),
+      stop_(options.stop),
       newton_(system, {.mixed_point = false}),
       mass_(system, newton_.bodies().topology()),
       damping_(system, newton_.bodies().topology()),
@@ -385,6 +386,7 @@ Vec ModalMatrices::narrowed(const Vec& y, Eigen::Index size) const {
 }
 
 Vec ModalMatrices::inverse(const Vec& f) const {
+  if (stop_ != nullptr && stop_->load()) throw ModesStopped();
   Vec x = s() * widened(f);
   solver_.solve(x);
   Vec y = narrowed(x, f.size());

@@ -73,6 +73,7 @@ class ModalMatrices {
   [[nodiscard]] bool factor_quadratic(double sigma);
   // Products with vectors of n() or unknowns() entries, of the same length.
   /// By the last factored inverse, on the admissible motions.
+  /// @throws ModesStopped
   [[nodiscard]] Vec inverse(const Vec& f) const;
   [[nodiscard]] Vec mass_times(const Vec& x) const;
   [[nodiscard]] Vec damping_times(const Vec& x) const;
@@ -106,6 +107,7 @@ class ModalMatrices {
   [[nodiscard]] bool is_spring(int row) const;
 
   const System& system_;
+  const std::atomic<bool>* stop_;
   StaticNewton newton_;
   SaddleMatrix mass_, damping_, shifted_;  ///< damping_ is scaled by s() and rate_.
   double rate_ = 1.0, asymmetry_ = 0.0;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <complex>
+#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +23,13 @@ struct ModeOptions {
   /// Frame in which the model is at rest and the modes are seen; the system has its centrifugal
   /// forces.
   std::optional<TurningFrame> frame = {};
+  const std::atomic<bool>* stop = nullptr;  ///< Ends the iterations when it becomes true.
+};
+
+/// The end of a search for modes by ModeOptions::stop.
+class ModesStopped : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override { return "modes: stopped"; }
 };
 
 /// Behaviour of a motion exp(λt).
@@ -95,6 +104,7 @@ struct ModesReport {
 /// are solved densely, many by Lanczos or Arnoldi iterations on the inverse of the shifted saddle
 /// matrix.
 /// @param equilibrium  Velocities are ignored, except for options.spin.
+/// @throws ModesStopped
 [[nodiscard]] ModesReport find_modes(const System& system, const State& equilibrium,
                                      const ModeOptions& options = {});
 
