@@ -13,7 +13,8 @@
 
 namespace polhode::inerter_tests {
 
-using namespace connectors;
+using connectors::kPi, connectors::kSteps, connectors::Outcome, connectors::run, connectors::slider,
+    connectors::Step, connectors::step_of;
 using ::testing::HasSubstr;
 
 /// Rounding of sums over a run.
