@@ -90,6 +90,26 @@ TEST(Inerters, APendulumMovesByItsEnergyAtEveryOrder) {
     }
 }
 
+// A body whose axes are not those of the world starts with the rate that its angular velocity
+// gives.
+TEST(Inerters, KeepTheRateOfTheStart) {
+  for (const Step& s : kSteps) {
+    const Outcome o = run(R"(
+format: 1
+variables: {h: 2 ms}
+bodies: {wheel: {mass: 2, inertia: [0.1, 0.2, 0.3], orientation: {axis: [1, 1, 0], angle: 70 deg}, angular_velocity: [0, 0, 0.8]}}
+joints: {pin: {type: revolute, bodies: [ground, wheel], at: [0, 0, 0], axis: z}}
+loads: {it: {type: rotary_inerter, joint: pin, inertance: 0.7 kg*m^2}}
+analysis: {duration: 1 s, step: h}
+output: {hdf5: false}
+)",
+                          {step_of(s)});
+    EXPECT_NEAR(o.load[4], 0.8, kRounding) << s.text;
+    EXPECT_NEAR(o.load[3], 0.8, s.h * s.h) << s.text;  // Rates at the ends of steps: order 2.
+    EXPECT_LT(o.summary.energy_drift, kRounding) << s.text;
+  }
+}
+
 // Without gravity the stop of a hinge takes the energy of both; with e = 1 the rate is reversed.
 TEST(Inerters, BounceWithTheirJoint) {
   for (const char* h : {"20 ms", "2 ms", "0.2 ms"}) {

@@ -23,8 +23,9 @@ void add_inerter_mass(const LoadSpec& load, const Model& model, double size, Sys
   const auto at_start = [&](int body, int number) {
     if (number == kGround) return BodyStep::ground(1.0);
     const BodySpec& of = model.bodies[static_cast<std::size_t>(body)];
-    return BodyStep::at_instant(of.position, of.orientation.normalized().toRotationMatrix(),
-                                of.velocity, of.angular_velocity);
+    const Quat q = of.orientation.normalized();
+    return BodyStep::at_instant(of.position, q.toRotationMatrix(), of.velocity,
+                                q.conjugate() * of.angular_velocity);
   };
   const BodyStep a = at_start(joint.a, d.bodies.a), b = at_start(joint.b, d.bodies.b);
   const JointCoordinate q = d.coordinate();
