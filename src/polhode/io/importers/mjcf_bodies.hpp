@@ -10,7 +10,7 @@
 
 namespace polhode::io {
 
-/// What a part of the model cannot represent: an error, or a note where partial imports are
+/// Errors about parts of a file that a model cannot represent, or notes where partial imports are
 /// allowed.
 class MjcfRefusals {
  public:

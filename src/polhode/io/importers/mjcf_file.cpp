@@ -88,7 +88,7 @@ void MjcfFile::read_defaults(const Element& e, const std::string& parent) {
   c.parent = parent;
   c.blocks.push_back(&e);
   for (const Element* below : xml.children(e, "default")) read_defaults(*below, name);
-  // What defaults give is read where it is used.
+  // Attributes of defaults are read where they are used.
   for (const Element* kind = e.FirstChildElement(); kind != nullptr;
        kind = kind->NextSiblingElement())
     if (std::string_view(kind->Name()) != "default") xml.skip(*kind);

@@ -72,7 +72,7 @@ class BodyFormer {
         notes_.push_back({ImportNote::Kind::approximated, xml_.place(*link(i).at),
                           format("the link {} has no mass, and takes {} of that of {}",
                                  quote(link(i).name), kNoMass, quote(link(below).name))});
-      // What it gets is taken from that body, so that the sums remain.
+      // Its mass and inertia are taken from that body: the sums remain.
       MassProperties& mass = at(tree_.mass, below);
       MassProperties& own = at(tree_.mass, i);
       own = {kNoMass * mass.mass, Vec3::Zero(),

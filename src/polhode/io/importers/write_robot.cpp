@@ -345,7 +345,7 @@ class ModelWriter {
     make.put(joints, joint_name_.at(loop.name), std::move(node));
   }
 
-  /// Joints that are held keep their start in the sum.
+  /// A coupling of the joints of a row that move; the others have their start in the sum.
   void write_row(const RobotRow& row, SourceNode& loads) {
     const NodeBuilder make{xml_.line(*row.at)};
     std::vector<SourceNode> joints, factors;
