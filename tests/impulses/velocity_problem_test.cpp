@@ -51,8 +51,8 @@ TEST(VelocityProblem, ABodyLeavesWithItsRestitutionWhereverItTouchesInTheStep) {
     }
 }
 
-/// What the projection onto joints took from the velocities of the step is part of the energy
-/// before the impact.
+/// The energy before the impact, with that which the projection onto joints removed from the
+/// velocities of the step.
 TEST(VelocityProblem, AnImpactHasTheEnergyThatTheProjectionOntoJointsTook) {
   for (const double phi : {0.1, 0.5, 0.9})
     for (const double e : {0.0, 0.5, 1.0}) {

@@ -76,7 +76,7 @@ TEST(ContactPoints, LieInsideOfTheBorderOfTheOtherSurface) {
       }
 }
 
-/// Of squares with the same border, too.
+/// The points of two squares with the same border, which lie inside of it.
 // @tests{mesh-contact}
 TEST(ContactPoints, OfEqualSquaresLieInside) {
   for (const int n : {1, 2, 3}) {

@@ -26,9 +26,9 @@ void UnilateralRows::add_to(ConstraintCheck& check, const State& state, const Tr
   check.broken = broken();
 }
 
-/// Fault of the step, with its bodies: an overlap at the end, at a point without a row, or a gain
-/// of energy by rows whose direction at the middle is not that of the change of the gap. Empty:
-/// none. Both vanish with the length of the step.
+/// Message about a fault of the step, empty without one: bodies that overlap at its end, at a point
+/// without a row, or a gain of energy by rows whose direction at the middle of the step differs from
+/// the gradient of the gap. Both vanish with the length of the step.
 std::string UnilateralRows::broken() const {
   const double accuracy = kOverlapGaps * touching_;
   for (const Stop& stop : stops_)

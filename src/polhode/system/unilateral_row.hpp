@@ -15,8 +15,8 @@ struct UnilateralRow {
   double restitution = 0.0;          ///< [-]
 };
 
-/// Change of the gap of a row over a step, from the displacements: exact in the shortest step,
-/// where the difference of two gaps is rounding.
+/// Change of the gap of a row over a step, by the displacements: the difference of two gaps loses
+/// accuracy in short steps.
 [[nodiscard]] inline double change_of_gap(const UnilateralRow& row, const BodyStep& a,
                                           const BodyStep& b) {
   const auto along = [](const Vec6& on, const BodyStep& s) {

@@ -16,7 +16,7 @@ namespace {
 
 using Element = XmlFile::Element;
 
-/// Reader of what stands beside the bodies: options, equalities, tendons and actuators.
+/// Reader of options, equalities, tendons and actuators.
 class MjcfReader {
  public:
   MjcfReader(XmlFile& xml, const ImportOptions& options, std::vector<ImportNote>& notes)

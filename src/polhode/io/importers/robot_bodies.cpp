@@ -15,9 +15,9 @@ namespace {
 
 using geometry::MassProperties;
 
-/// Share of the next body's mass and inertia that a link without mass takes, and about the relative
-/// error of the motion by it. With much less than 1e-12 velocities at the start lose their digits
-/// where rows of other loads, as of inerters, pass the link.
+/// Part of the next body's mass and inertia that a link without mass takes; the relative error of
+/// the motion is about as large. Below 1e-12 the initial velocities of models with inerters at such
+/// a link lose accuracy.
 constexpr double kNoMass = 1e-10;
 
 /// Singular values of joint axes below this part of the largest are zero.
