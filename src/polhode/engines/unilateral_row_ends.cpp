@@ -27,8 +27,8 @@ void UnilateralRows::add_to(ConstraintCheck& check, const State& state, const Tr
 }
 
 /// Message about a fault of the step, empty without one: bodies that overlap at its end, at a point
-/// without a row, or a gain of energy by rows whose direction at the middle of the step differs from
-/// the gradient of the gap. Both vanish with the length of the step.
+/// without a row, or a gain of energy by rows whose direction at the middle of the step differs
+/// from the gradient of the gap. Both vanish with the length of the step.
 std::string UnilateralRows::broken() const {
   const double accuracy = kOverlapGaps * touching_;
   for (const Stop& stop : stops_)
