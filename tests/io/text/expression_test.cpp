@@ -55,6 +55,53 @@ TEST(Expression, EvaluatesAllListedFunctions) {
   EXPECT_EQ(value("pow(2, 10)"), 1024.0);
 }
 
+TEST(Expression, HasRemaindersStepsPulsesAndRamps) {
+  EXPECT_EQ(value("mod(7, 3)"), 1.0);
+  EXPECT_EQ(value("mod(-1, 3)"), 2.0);
+  EXPECT_EQ(value("mod(1, -3)"), -2.0);
+  const auto at = [](const std::string& text, double t) { return value(text, {}, {}, {}, t); };
+  EXPECT_EQ(at("step(t, 2)", 1.999), 0.0);
+  EXPECT_EQ(at("step(t, 2)", 2.0), 1.0);
+  for (const auto& [t, on] : {std::pair(0.9, 0.0), {1.0, 1.0}, {2.9, 1.0}, {3.0, 0.0}})
+    EXPECT_EQ(at("pulse(t, 1, 3)", t), on) << t;
+  for (const auto& [t, part] :
+       {std::pair(0.0, 0.0), {1.0, 0.0}, {1.5, 0.25}, {3.0, 1.0}, {9.0, 1.0}}) {
+    EXPECT_EQ(at("ramp(t, 1, 3)", t), part) << t;
+    EXPECT_EQ(at("smoothstep(t, 1, 3)", t), part * part * (3.0 - 2.0 * part)) << t;
+  }
+  EXPECT_EQ(at("pulse(mod(t, 2), 0, 1)", 4.5), 1.0);
+  EXPECT_EQ(at("pulse(mod(t, 2), 0, 1)", 5.5), 0.0);
+  EXPECT_EQ(fault_of("ramp(1, 3, 2)"), "ramp() ends before it begins");
+  EXPECT_EQ(fault_of("pulse(1, 3, 3)"), "pulse() ends before it begins");
+}
+
+TEST(Expression, PlacesOfQuantitiesAreNumbersOfOneDimension) {
+  const io::Variables v = {{"L", known(0.5, io::dimensions::kLength)},
+                           {"m", known(2.0, io::dimensions::kMass)}};
+  io::UnitSystem mm;
+  mm.length = 1e-3;
+  EXPECT_DOUBLE_EQ(value("ramp(L, 250, 750)", {}, mm, v), 0.5);
+  EXPECT_DOUBLE_EQ(value("ramp(250, 0, L)", {}, mm, v), 0.5);
+  EXPECT_DOUBLE_EQ(value("ramp(250, -L, L)", {}, mm, v), 0.75);
+  EXPECT_DOUBLE_EQ(value("step(L, 499)", {}, mm, v), 1.0);
+  EXPECT_DOUBLE_EQ(value("mod(L, 200)", io::dimensions::kLength, mm, v), 0.1);
+  EXPECT_EQ(fault_of("ramp(L, m, 3)", v), "ramp() joins a length and a mass");
+  EXPECT_EQ(fault_of("mod(L, m)", v), "mod() joins a length and a mass");
+}
+
+TEST(Expression, VariablesMayHaveTheNamesOfFunctionsThatAreNotTaken) {
+  const io::Variables v = {{"ramp", bare(3.0)}, {"step", bare(0.5)}};
+  EXPECT_EQ(value("ramp*step + ramp (step, 0, 1)", {}, {}, v), 2.0);
+}
+
+TEST(Expression, AnUnknownFunctionListsThoseThatExist) {
+  io::ExpressionFault fault;
+  EXPECT_FALSE(io::Expression::parse("1 + smothstep(2, 1, 3)", {}, {}, false, fault));
+  EXPECT_EQ(fault.what, "unknown function 'smothstep'");
+  EXPECT_TRUE(fault.hint.starts_with("Did you mean 'smoothstep'? Functions: ")) << fault.hint;
+  EXPECT_EQ(fault.offset, 4U);
+}
+
 TEST(Expression, TakesAUnitAfterAnExpression) {
   EXPECT_DOUBLE_EQ(value("30 deg", io::dimensions::kAngle), kPi / 6);
   EXPECT_DOUBLE_EQ(value("2*pi rad/s", io::dimensions::kAngularVelocity), 2 * kPi);
@@ -118,7 +165,7 @@ TEST(Expression, LocatesItsErrors) {
   EXPECT_FALSE(io::Expression::parse("1 + foo(2)", {}, {}, false, fault));
   EXPECT_EQ(fault.offset, 4U);
   EXPECT_EQ(fault.length, 3U);
-  EXPECT_EQ(fault.what, "unknown name 'foo'");
+  EXPECT_EQ(fault.what, "unknown function 'foo'");
   EXPECT_EQ(fault_of("t"), "'t' (the time) has no meaning here");
   EXPECT_EQ(fault_of("3kg"), "'3kg' lacks a space before the unit");
 }

@@ -58,6 +58,12 @@ TEST(ExpressionBreaks, AreThoseOfFunctionsWithBranches) {
   expect_breaks("max(0, min(1, t - 2))", 10.0, {2.0, 3.0}, 1);
   expect_breaks("sin(2*pi*t) > 0 ? 1 : -1", 1.9, {0.5, 1.0, 1.5}, 0);
   expect_breaks("atan2(sin(t), cos(t))", 4.0, {std::numbers::pi}, 0);
+  expect_breaks("mod(t, 0.25)", 0.6, {0.25, 0.5}, 0);
+  expect_breaks("step(t, 0.7)", 2.0, {0.7}, 0);
+  expect_breaks("pulse(t, 5.3, 5.5)", 10.0, {5.3, 5.5}, 0);
+  expect_breaks("pulse(mod(t, 2), 0, 1)", 3.9, {1.0, 2.0, 3.0}, 0);
+  expect_breaks("ramp(t, 2, 3)", 10.0, {2.0, 3.0}, 1);
+  expect_breaks("smoothstep(t, 2, 3)", 10.0, {2.0, 3.0}, 1);
   expect_breaks("max(0, sin(t))^2", 7.0, {std::numbers::pi, 2.0 * std::numbers::pi}, 1);
 }
 
@@ -99,6 +105,9 @@ TEST(ExpressionBounds, HoldForValueAndSecondDerivative) {
                                           "abs(t - 2)*t^3",
                                           "min(t^2, 4*t)",
                                           "atan2(t + 1, 2*t + 3)",
+                                          "mod(t, 5)*t",
+                                          "ramp(t, -1, 4)^2",
+                                          "smoothstep(t, -1, 4)",
                                           "(2 + t)^sin(t)"};
   for (const std::string& text : texts) {
     const auto f = expression(text);

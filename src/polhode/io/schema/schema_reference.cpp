@@ -157,6 +157,13 @@ std::string reference_markdown() {
           "combined by spaces, `*`, `/` and `^`; g is the gram, g0 standard gravity.\n";
   page += "* Taken names: " + in_code(reserved_names()) + ".\n";
   page +=
+      "* More functions: `mod(x, y)` is the remainder of x by y, with the sign of y; `step(x, a)` "
+      "is "
+      "0 below a and 1 from a on; `pulse(x, a, b)` is 1 from a until before b, else 0; "
+      "`ramp(x, a, b)` rises evenly from 0 at a to 1 at b, and `smoothstep(x, a, b)` without a "
+      "jump "
+      "of its slope. A variable may have such a name.\n";
+  page +=
       "* Operators: `+ - * / ^`, brackets, `< <= > >= == !=`, `&& || !`, `c ? a : b`.\n\n"
       "Directions are `x`, `y`, `z`, `-x`, `-y`, `-z`, or three numbers of any length but zero. "
       "Names consist of letters, digits, `_` and `-`.\n\n"

@@ -8,6 +8,17 @@
 
 namespace polhode::io {
 
+namespace {
+
+/// Part of the way from one value to another, held at 0 before and at 1 after.
+template <class Number>
+Number part_of_way(const Number& x, const Number& from, const Number& to) {
+  using std::max, std::min;
+  return max(Number(0.0), min(Number(1.0), (x - from) / (to - from)));
+}
+
+}  // namespace
+
 template <class Number>
 Number Expression::evaluate(const Number& t) const {
   using Op = ExpressionOp;
@@ -19,9 +30,11 @@ Number Expression::evaluate(const Number& t) const {
   std::size_t n = 0;  // Values on the stack.
   const auto unary = [&](const Number& value) { stack[n - 1] = value; };
   const auto binary = [&](const Number& value) { stack[--n - 1] = value; };
+  const auto ternary = [&](const Number& value) { stack[(n -= 2) - 1] = value; };
   for (const Instruction& i : program_) {
     const Number x = n > 0 ? stack[n - 1] : zero;
     const Number y = n > 1 ? stack[n - 2] : zero;  // y op x
+    const Number first = n > 2 ? stack[n - 3] : zero;
     switch (i.op) {
       case Op::kPush:
         stack[n++] = i.value;
@@ -138,6 +151,23 @@ Number Expression::evaluate(const Number& t) const {
       case Op::kMax:
         binary(max(y, x));
         break;
+      case Op::kMod:
+        binary(y - x * floor(y / x));
+        break;
+      case Op::kStep:
+        binary(y >= x ? 1.0 : 0.0);
+        break;
+      case Op::kPulse:
+        ternary(first >= y && first < x ? 1.0 : 0.0);
+        break;
+      case Op::kRamp:
+        ternary(part_of_way(first, y, x));
+        break;
+      case Op::kSmoothstep: {
+        const Number s = part_of_way(first, y, x);
+        ternary(s * s * (Number(3.0) - Number(2.0) * s));
+        break;
+      }
     }
   }
   return stack[0];
@@ -201,7 +231,8 @@ std::shared_ptr<const Expression> Expression::parse(std::string_view text,
 
 std::vector<std::string> reserved_names() {
   std::vector<std::string> names = {"t", "pi"};
-  for (const auto& f : kExpressionFunctions) names.emplace_back(f.name);
+  for (const auto& f : kExpressionFunctions)
+    if (f.reserved) names.emplace_back(f.name);
   return names;
 }
 

@@ -43,8 +43,9 @@ struct ExpressionFault {
 /// A checked expression of time, ready to be evaluated by any number of threads.
 ///
 /// Operators  + - * / ^  ( )  < <= > >= == !=  && ||  c ? a : b;  constant pi;  functions sin cos
-/// tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs sign floor min max pow. A unit
-/// may follow after a blank: "2*pi rad/s". Dimensions of variables with units are checked.
+/// tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs sign floor min max pow mod step
+/// pulse ramp smoothstep. A unit may follow after a blank: "2*pi rad/s". Dimensions of variables
+/// with units are checked.
 class Expression {
  public:
   /// @param allow_time  Whether t [s] is allowed.
@@ -66,7 +67,7 @@ class Expression {
   /// Conditions are evaluated on that side.
   [[nodiscard]] TimeRates rates(double t, TimeSide side) const;
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
-  /// Next time at which a condition, abs, sign, floor, min, max or atan2 changes its branch, as
+  /// Next time at which a condition or a function with branches (abs, floor) changes its branch, as
   /// TimeFunction::next_break: by interval arithmetic, so that none is missed, however short.
   /// Points at which two branches touch without a change do not count.
   [[nodiscard]] TimeBreak next_break(double t, double until) const;
@@ -101,7 +102,7 @@ class Expression {
   bool depends_on_time_ = false;
 };
 
-/// Reserved names: t, pi and the functions.
+/// Reserved names: t, pi and those functions whose names no variable may have.
 [[nodiscard]] std::vector<std::string> reserved_names();
 
 }  // namespace polhode::io

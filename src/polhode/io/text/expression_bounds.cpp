@@ -201,6 +201,12 @@ Jet smooth(ExpressionOp op, const Jet& x) {
   }
 }
 
+/// Part of the way from one value to another, held at 0 before and at 1 after.
+Jet part_of_way(const Jet& x, const Jet& from, const Jet& to, Branches& branches) {
+  const Jet part = (x + (-from)) * inverse(to + (-from));
+  return -lesser(Jet{0.0, 0.0, 0.0}, -lesser(Jet{1.0, 0.0, 0.0}, part, branches), branches);
+}
+
 /// The program over a span of time.
 template <class Program>
 Jet run(const Program& program, const Interval& t, Branches& branches) {
@@ -295,6 +301,27 @@ Jet run(const Program& program, const Interval& t, Branches& branches) {
       case Op::kMax:
         stack.push_back(-lesser(-pop(), -x, branches));
         break;
+      case Op::kMod: {
+        const Jet y = pop();
+        stack.push_back(y + (-(x * whole(y * inverse(x), branches))));
+        break;
+      }
+      case Op::kStep:
+        stack.push_back(logical(less(x, pop(), true, branches)));
+        break;
+      case Op::kPulse: {
+        const Jet from = pop(), y = pop();
+        const Interval begun = less(from, y, true, branches);
+        stack.push_back(logical(begun * less(y, x, false, branches)));
+        break;
+      }
+      case Op::kRamp:
+      case Op::kSmoothstep: {
+        const Jet from = pop(), s = part_of_way(pop(), from, x, branches);
+        const bool smooth_ends = i.op == Op::kSmoothstep;
+        stack.push_back(smooth_ends ? s * s * (Jet{3.0, 0.0, 0.0} + Jet{-2.0, 0.0, 0.0} * s) : s);
+        break;
+      }
       default:
         stack.push_back(smooth(i.op, x));
         break;

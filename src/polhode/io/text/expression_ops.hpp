@@ -47,6 +47,11 @@ enum class ExpressionOp : unsigned char {
   kFloor,
   kMin,
   kMax,
+  kMod,
+  kStep,
+  kPulse,
+  kRamp,
+  kSmoothstep,
 };
 
 /// Dimension rules of functions.
@@ -59,6 +64,7 @@ enum class FunctionRule : unsigned char {
   kKeepTwo,
   kQuotientToAngle,
   kToNumber,
+  kPlace,  ///< Of a value among others of its dimension, a plain number.
   kPower
 };
 
@@ -68,6 +74,7 @@ struct NamedFunction {
   ExpressionOp op;
   int arguments;
   FunctionRule rule;
+  bool reserved = true;  ///< Otherwise a variable may have the name too, which no bracket follows.
 };
 inline constexpr std::array kExpressionFunctions = {
     NamedFunction{"sin", ExpressionOp::kSin, 1, FunctionRule::kAngleToNumber},
@@ -89,6 +96,11 @@ inline constexpr std::array kExpressionFunctions = {
     NamedFunction{"floor", ExpressionOp::kFloor, 1, FunctionRule::kNumber},
     NamedFunction{"min", ExpressionOp::kMin, 2, FunctionRule::kKeepTwo},
     NamedFunction{"max", ExpressionOp::kMax, 2, FunctionRule::kKeepTwo},
+    NamedFunction{"mod", ExpressionOp::kMod, 2, FunctionRule::kKeepTwo, false},
+    NamedFunction{"step", ExpressionOp::kStep, 2, FunctionRule::kPlace, false},
+    NamedFunction{"pulse", ExpressionOp::kPulse, 3, FunctionRule::kPlace, false},
+    NamedFunction{"ramp", ExpressionOp::kRamp, 3, FunctionRule::kPlace, false},
+    NamedFunction{"smoothstep", ExpressionOp::kSmoothstep, 3, FunctionRule::kPlace, false},
     NamedFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
 };
 
@@ -100,6 +112,9 @@ inline constexpr std::array kExpressionFunctions = {
     case Op::kTime:
       return 0;
     case Op::kChoose:
+    case Op::kPulse:
+    case Op::kRamp:
+    case Op::kSmoothstep:
       return 3;
     case Op::kAdd:
     case Op::kSubtract:
@@ -117,6 +132,8 @@ inline constexpr std::array kExpressionFunctions = {
     case Op::kAtan2:
     case Op::kMin:
     case Op::kMax:
+    case Op::kMod:
+    case Op::kStep:
       return 2;
     default:
       return 1;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kLongest = 4096;
 constexpr int kDeepest = 48;  // Nested brackets.
+constexpr double kMostExponent = 99.0;
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -281,8 +282,10 @@ class ExpressionParser {
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view word = text_.substr(offset, at_ - offset);
     const std::size_t start = result_.program_.size();
+    skip_blanks();
+    const bool bracket = text_.substr(at_).starts_with('(');
     for (const NamedFunction& f : kExpressionFunctions)
-      if (word == f.name) return call(f, offset);
+      if (word == f.name && (f.reserved || bracket)) return call(f, offset);
     if (word == "pi") {
       push({Op::kPush, std::numbers::pi});
       return {{}, start, offset};
@@ -295,6 +298,7 @@ class ExpressionParser {
     if (word == "t")
       stop(offset, 1, "'t' (the time) has no meaning here", "This value cannot depend on time.");
     const auto found = variables_.find(word);
+    if (found == variables_.end() && bracket) unknown_function(word, offset);
     if (found == variables_.end()) unknown_name(word, offset);
     push({Op::kPush, found->second.value});
     return {found->second, start, offset};
@@ -310,20 +314,28 @@ class ExpressionParser {
     stop(offset, word.size(), "unknown name " + quote(word), did_you_mean(word, all) + known);
   }
 
+  [[noreturn]] static void unknown_function(std::string_view word, std::size_t offset) {
+    std::vector<std::string> names;
+    for (const NamedFunction& f : kExpressionFunctions) names.emplace_back(f.name);
+    stop(offset, word.size(), "unknown function " + quote(word),
+         did_you_mean(word, names) + "Functions: " + name_list(names) + ".");
+  }
+
   Part call(const NamedFunction& f, std::size_t offset) {
     const std::size_t start = result_.program_.size();
     expect("(");
-    Part a = choice();
-    Part b;
-    if (f.arguments == 2) {
-      expect(",");
-      b = choice();
+    std::array<Part, 3> parts;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(f.arguments); ++k) {
+      if (k > 0) expect(",");
+      parts[k] = choice();
     }
     expect(")");
+    auto& [a, b, c] = parts;
     if (f.rule == FunctionRule::kPower) {
       Part raised = raise(a, b);
       return {raised.type, start, offset};
     }
+    if (f.rule == FunctionRule::kPlace && f.arguments == 3) place_in_span(f, a, b, c);
     const Quantity type = result_type(f, a, b);
     emit(f.op, f.arguments);
     return {type, start, offset};
@@ -388,7 +400,8 @@ class ExpressionParser {
            "the exponent is " + exponent.type.dimension.name(), "It must be a plain number.");
     Quantity type = base.type;
     if (base.type.certainty != Certainty::kPure) {
-      const std::optional<double> n = constant_value(exponent.start);
+      std::optional<double> n = constant_value(exponent.start);
+      if (n && !(std::abs(*n) <= kMostExponent)) n.reset();
       if (!n && is_known(base))
         stop(exponent.offset, at_ - exponent.offset,
              "the exponent of " + base.type.dimension.name() + " depends on time",
@@ -400,15 +413,35 @@ class ExpressionParser {
     return {type, base.start, base.offset};
   }
 
-  /// Value of the program from an instruction on, if it does not depend on t.
-  [[nodiscard]] std::optional<double> constant_value(std::size_t start) const {
+  /// Value of a part of the program, if it does not depend on t. @param end  The instruction
+  /// after it; none: the end of the program.
+  [[nodiscard]] std::optional<double> constant_value(std::size_t start,
+                                                     std::optional<std::size_t> end = {}) const {
     Expression part;
-    part.program_.assign(result_.program_.begin() + static_cast<std::ptrdiff_t>(start),
-                         result_.program_.end());
+    const auto first = result_.program_.begin();
+    part.program_.assign(
+        first + static_cast<std::ptrdiff_t>(start),
+        first + static_cast<std::ptrdiff_t>(end.value_or(result_.program_.size())));
     for (const auto& instruction : part.program_)
       if (instruction.op == Op::kTime) return std::nullopt;
-    const double value = part(0.0);
-    return std::isfinite(value) && std::abs(value) <= 99 ? std::optional(value) : std::nullopt;
+    return part(0.0);
+  }
+
+  /// Converts a value and the ends of a span to one dimension. @throws ExpressionFault also if
+  /// constant ends are not in order
+  void place_in_span(const NamedFunction& f, Part& x, Part& from, Part& to) {
+    from.type = to.type = unify(from, to, format("{}()", f.name));
+    if (is_known(x) && !is_known(to)) {
+      adopt(to, x.type.dimension);
+      const std::size_t before = result_.program_.size();
+      adopt(from, x.type.dimension, to.start);
+      to.start += result_.program_.size() - before;
+      from.type = to.type = x.type;
+    }
+    const auto a = constant_value(from.start, to.start), b = constant_value(to.start);
+    if (a && b && !(*a < *b))
+      stop(from.offset, at_ - from.offset, format("{}() ends before it begins", f.name),
+           "Write the start of the span before its end.");
   }
 
   Quantity result_type(const NamedFunction& f, Part& a, Part& b) {
@@ -432,6 +465,9 @@ class ExpressionParser {
         return known(dimensions::kAngle);
       case FunctionRule::kKeepTwo:
         return unify(a, b, format("{}()", f.name));
+      case FunctionRule::kPlace:
+        unify(a, b, format("{}()", f.name));
+        return {};
       case FunctionRule::kToNumber:
         return {};
       case FunctionRule::kRoot: {
