@@ -90,6 +90,29 @@ TEST(Trust, ImpactsThatWereNotSolvedAreNamed) {
                            "Take shorter steps"));
 }
 
+TEST(Trust, UnsolvedImpactsOfSolidsAreNamedByTheirContact) {
+  const Simulation s(io::read_model_text(R"(
+format: 1
+materials: {s: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  u: {mesh: {block: {size: [1, 1, 1], cells: [1, 1, 1]}, position: [0, 0, 1.6]}, element: hex8, material: s, contact: {surface: zmin}}
+  l: {mesh: {block: {size: [1, 1, 1], cells: [1, 1, 1]}, position: [0, 0, 0.5]}, element: hex8, material: s, bonded: {ground: zmin}, contact: {surface: zmax}}
+contacts: {}
+analysis: {duration: 1, step: 1}
+)",
+                                         "solids.yaml"));
+  Ledger ledger;
+  const int groups = s.system().nodes().group_count();
+  int contact = 0;
+  while (contact < groups && !s.system().nodes().group(contact).surface_impacts()) ++contact;
+  ASSERT_LT(contact, groups);
+  ledger.impacts = {.steps = 1, .largest = 0.02, .time = 0.125, .group = contact};
+  EXPECT_THAT(reasons_for_distrust(s.model(), s.system(), ledger),
+              testing::ElementsAre("impacts do not meet their law in 1 steps: velocities differ "
+                                   "from it by up to 0.02 m/s, in the contact 'u on l' at "
+                                   "t = 0.125 s. Take shorter steps"));
+}
+
 bool warns_of(const RunSummary& r, const std::string& part) {
   return std::any_of(r.warnings.begin(), r.warnings.end(),
                      [&](const std::string& w) { return w.find(part) != std::string::npos; });

@@ -60,10 +60,13 @@ std::vector<std::string> reasons_for_distrust(const Model& model, const System& 
       return body == kGround ? std::string("the ground")
                              : format("'{}'", system.bodies()[body].name);
     };
+    const std::string where =
+        i.group < 0 ? format("where {} meets {}", name(i.a), name(i.b))
+                    : format("in the contact '{}'", system.nodes().group(i.group).name());
     reasons.push_back(
         format("impacts do not meet their law in {} steps: velocities differ from it by up to "
-               "{:.2g} m/s, where {} meets {} at t = {:.6g} s. Take shorter steps",
-               i.steps, i.largest, name(i.a), name(i.b), i.time));
+               "{:.2g} m/s, {} at t = {:.6g} s. Take shorter steps",
+               i.steps, i.largest, where, i.time));
   }
   return reasons;
 }

@@ -102,11 +102,15 @@ class ImpactResolver {
   [[nodiscard]] double returnable(std::span<const Row> rows) const;
   [[nodiscard]] Work turn_surfaces(State& state) const;
   void tell_surfaces(State& state) const;
+  [[nodiscard]] Eigen::Vector2d updated_friction(const Row& along, const Row& across, double normal,
+                                                 const std::vector<Vec6>& v) const;
   double apply_friction(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
   /// Whether the impulses of the normals act too, or friction alone.
   enum class Acts { all, friction };
   bool sweep(std::vector<Row>& rows, Acts acts, std::vector<Vec6>& v) const;
   void solve_rows(std::vector<Row>& rows, std::vector<Vec6>& v, Acts acts);
+  [[nodiscard]] std::pair<int, double> largest_miss(const std::vector<Row>& rows, Acts acts,
+                                                    const std::vector<Vec6>& v) const;
   void note_error(int row, double error, double fastest);
   void follow(std::vector<Row>& rows, std::vector<Vec6>& v);
   [[nodiscard]] bool lands_flat(const Island& island, const std::vector<Row>& rows) const;

@@ -20,6 +20,8 @@ constexpr int kMaxSweeps = 500;
 constexpr double kHeld = 1e-13;
 /// Number of rows above which sweeps come first, as they cost less than factors of that size.
 constexpr std::size_t kFactored = 60;
+/// Largest number of rows that are factored where the sweeps leave an error that counts.
+constexpr std::size_t kMostFactored = 1500;
 /// Rounding of a velocity relative to the sum of its terms.
 constexpr double kRowRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// Error of a velocity that counts as unsolved, as a part of the island's largest.
@@ -34,21 +36,28 @@ Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
 
 }  // namespace
 
-/// Updates the friction impulses towards zero slip within the cone: a step by the larger mobility
-/// of the two tangents. @eq{impact-friction}
-double ImpactResolver::apply_friction(Row& along, Row& across, double normal,
-                                      std::vector<Vec6>& v) const {
+/// Friction impulses one update towards zero slip later, within the cone: a step by the larger
+/// mobility of the two tangents. @eq{impact-friction}
+Eigen::Vector2d ImpactResolver::updated_friction(const Row& along, const Row& across, double normal,
+                                                 const std::vector<Vec6>& v) const {
   const Impact& impact = rows_[along.impact].impact;
   const Eigen::Vector2d slip(along.speed(v), across.speed(v)),
       friction_impulse(impact.along.dot(impact.friction_impulse),
                        impact.across.dot(impact.friction_impulse)),
-      before(along.impulse, across.impulse),
-      after = in_cone(friction_impulse + before - slip / std::max(along.mobility, across.mobility),
-                      impact.mu * normal, impact.mu_across * normal) -
-              friction_impulse;
-  along.apply(after.x() - before.x(), v);
-  across.apply(after.y() - before.y(), v);
-  return (after - before).lpNorm<Eigen::Infinity>();
+      before(along.impulse, across.impulse);
+  return in_cone(friction_impulse + before - slip / std::max(along.mobility, across.mobility),
+                 impact.mu * normal, impact.mu_across * normal) -
+         friction_impulse;
+}
+
+/// @returns the largest change of an impulse.
+double ImpactResolver::apply_friction(Row& along, Row& across, double normal,
+                                      std::vector<Vec6>& v) const {
+  const Eigen::Vector2d change =
+      updated_friction(along, across, normal, v) - Eigen::Vector2d(along.impulse, across.impulse);
+  along.apply(change.x(), v);
+  across.apply(change.y(), v);
+  return change.lpNorm<Eigen::Infinity>();
 }
 
 /// Projected Gauss-Seidel sweeps over all impulses of an island. Normal impulses aim at the target
@@ -81,6 +90,35 @@ bool ImpactResolver::sweep(std::vector<Row>& rows, Acts acts, std::vector<Vec6>&
   return false;
 }
 
+/// Impact whose velocity misses its law most, -1 for none, and by how much: the natural map of the
+/// row problem. @eq{row-problem}
+std::pair<int, double> ImpactResolver::largest_miss(const std::vector<Row>& rows, Acts acts,
+                                                    const std::vector<Vec6>& v) const {
+  std::pair<int, double> largest(-1, 0.0);
+  double most = 0.0;
+  for (const Row& row : rows) most = std::max(most, row.mobility);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    const Impact& impact = rows_[row.impact].impact;
+    const auto note = [&](double miss) {
+      if (miss > largest.second) largest = {row.impact, miss};
+    };
+    const double normal = std::max(0.0, impact.given + row.impulse),
+                 missing = impact.wanted - row.speed(v);
+    if (acts == Acts::all && row.mobility > kHeld * most)
+      note(std::max(missing, std::min(-missing, row.mobility * normal)));
+    if (i + 1 == rows.size() || !rows[i + 1].has_friction) continue;
+    const Row &along = rows[i + 1], &across = rows[i + 2];
+    i += 2;
+    const double mobility = std::max(along.mobility, across.mobility);
+    if (!(mobility > kHeld * most)) continue;
+    note(mobility * (updated_friction(along, across, normal, v) -
+                     Eigen::Vector2d(along.impulse, across.impulse))
+                        .lpNorm<Eigen::Infinity>());
+  }
+  return largest;
+}
+
 /// Impulses of an island as a row problem: their sums with those of the step are bounded by zero
 /// and by the cones, and they are as small as possible where rows share a load.
 /// @eq{impact-friction} @eq{row-problem}
@@ -100,18 +138,9 @@ void ImpactResolver::solve_rows(std::vector<Row>& rows, std::vector<Vec6>& v, Ac
   for (const Row& row : rows) fastest = std::max(fastest, std::abs(row.before));
   if (rows.size() > kFactored && sweep(rows, acts, v)) return;
   if (rows.size() > static_cast<std::size_t>(kMostDenseRows)) {
-    double error = 0.0;
-    std::size_t worst = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i].has_friction || (i > 0 && rows[i - 1].has_friction)) continue;
-      const Impact& impact = rows_[rows[i].impact].impact;
-      const double missing = impact.wanted - rows[i].speed(v);
-      const double of_row = impact.given + rows[i].impulse > 0.0 ? std::abs(missing) : missing;
-      if (of_row <= error) continue;
-      error = of_row;
-      worst = i;
-    }
-    return note_error(rows[worst].impact, error, fastest);
+    const auto [worst, error] = largest_miss(rows, acts, v);
+    if (!(error > kUnsolved * fastest)) return;
+    if (rows.size() > kMostFactored) return note_error(worst, error, fastest);
   }
 
   std::vector<std::size_t> used;  // rows of the problem
@@ -146,15 +175,22 @@ void ImpactResolver::solve_rows(std::vector<Row>& rows, std::vector<Vec6>& v, Ac
   problem.blocks = std::move(blocks);
   problem.given = Eigen::Map<const Vec>(given.data(), count);
   double rounding = 0.0;
+  std::vector<const Vec6*> loads(v.size());  // of a row, by position in the island
   for (Eigen::Index i = 0; i < count; ++i) {
     const Row& row = rows[used[static_cast<std::size_t>(i)]];
+    for (const auto& [place, J] : row.on) loads[static_cast<std::size_t>(place)] = &J;
     problem.b[i] = row.speed(v) - target[static_cast<std::size_t>(i)];
     double terms = 0.0;
     for (const auto& [place, J] : row.on)
       terms += J.cwiseAbs().dot(v[static_cast<std::size_t>(place)].cwiseAbs());
     rounding = std::max(rounding, kRowRounding * terms);
-    for (Eigen::Index j = 0; j <= i; ++j)
-      problem.A(i, j) = problem.A(j, i) = row.speed_by(rows[used[static_cast<std::size_t>(j)]]);
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      double sum = 0.0;
+      for (const auto& [place, x] : rows[used[static_cast<std::size_t>(j)]].answer)
+        if (const Vec6* const J = loads[static_cast<std::size_t>(place)]) sum += J->dot(x);
+      problem.A(i, j) = problem.A(j, i) = sum;
+    }
+    for (const auto& [place, J] : row.on) loads[static_cast<std::size_t>(place)] = nullptr;
   }
   Vec p = Vec::Zero(count);
   const RowReport report = problem.solve(p, rounding);
@@ -171,6 +207,7 @@ void ImpactResolver::note_error(int row, double error, double fastest) {
   unsolved_.steps = 1;
   unsolved_.a = rows_[row].bodies.a;
   unsolved_.b = rows_[row].bodies.b;
+  unsolved_.group = surface(row) ? of_surface(row).number : -1;
 }
 
 void ImpactResolver::report(double t, UnsolvedImpacts& impacts) const {

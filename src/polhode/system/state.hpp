@@ -47,6 +47,7 @@ struct UnsolvedImpacts {
   double largest = 0.0;    ///< Largest error of a velocity [m/s].
   double time = 0.0;       ///< Its time [s].
   int a = -1, b = -1;      ///< Its bodies; −1: not known, or the ground.
+  int group = -1;          ///< Elements in contact instead of bodies; −1: none.
 };
 
 /// Balance of the run so far, in SI units.

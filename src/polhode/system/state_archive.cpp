@@ -199,6 +199,7 @@ void ledger(Archive& archive, const System& system, AnyLedger& l) {
   archive(l.impacts.time);
   archive.whole(l.impacts.a, -1, system.body_count() - 1);
   archive.whole(l.impacts.b, -1, system.body_count() - 1);
+  archive.whole(l.impacts.group, -1, system.nodes().group_count() - 1);
   archive.whole(l.steps, 0, kMost);
   archive.whole(l.rejected, 0, kMost);
   archive.whole(l.iterations, 0, kMost);

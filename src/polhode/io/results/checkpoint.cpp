@@ -21,7 +21,7 @@ namespace {
 // (16, padded with blanks), length of the state (8, little endian), state, SHA-256 of all that
 // (64).
 constexpr std::string_view kMagicStem = "polhode state ";
-constexpr std::string_view kMagic = "polhode state 7\n";
+constexpr std::string_view kMagic = "polhode state 8\n";
 constexpr std::size_t kDigest = 64, kMethod = 16;
 
 /// Order and instruction set of a run: "2 avx512".
