@@ -86,6 +86,7 @@ class Expression {
 
  private:
   friend class ExpressionParser;
+  friend class ExpressionWriter;
   struct Instruction {
     ExpressionOp op;
     double value = 0.0;
