@@ -8,7 +8,8 @@
     tools/attack.py --seed 7 results      other random numbers; one kind only
     tools/attack.py --keep FOLDER         inputs of faults are kept there
 
-Kinds: models (words and bytes of model files changed), meshes (bytes of mesh and surface files), results (results.h5 cut or
+Kinds: models (words and bytes of model files changed), meshes (bytes of mesh and surface files), robots (words and bytes of URDF, MJCF
+and SDFormat files), results (results.h5 cut or
 with changed bytes, read by convert, plot and view; numbers that are shown must be those of the run), checkpoints (changed bytes, which must be refused, and forged ones with a
 valid checksum), kills (kill -9 at a random time, restart, and comparison of all files with a run in one go).
 
@@ -38,7 +39,7 @@ LIMIT = 100.0  # [s] for one command: beyond, it hangs.
 INTERNAL_ERROR = 1
 EXIT_CODES = {0, 2, 3, 4, 5, 6, 75}  # docs/reference/cli.md; 1 is a fault of the program.
 # Attacks of a round; the suite runs one round, about two minutes on two cores.
-ROUND = {"models": 300, "meshes": 120, "results": 240, "checkpoints": 240, "kills": 6}
+ROUND = {"models": 300, "meshes": 120, "robots": 120, "results": 240, "checkpoints": 240, "kills": 6}
 
 # Models that write what is attacked: bodies and a joint; contact with friction; a solid in statics' mesh, moved.
 MODELS = {
@@ -139,6 +140,9 @@ class Attacks:
         self.models = sorted((ROOT / "tests/corpus/good").glob("*")) + sorted((ROOT / "examples").glob("*/model.yaml"))
         self.meshes = (sorted((ROOT / "tests/solids/mesh/data").glob("*.[miv]*")) + sorted((ROOT / "tests/geometry/data").glob("*")))
         self.meshes = [m for m in self.meshes if m.suffix in (".msh", ".vtu", ".inp", ".stl", ".obj")]
+        self.robots = sorted((ROOT / "tests/corpus/robots").glob("*"))
+        self.robot_words = sorted({w for r in self.robots for w in r.read_bytes().replace(b">", b"> ").split()} |
+                                  {b"1e308", b"-1", b"0", b"1e-308", b"nan", b"inf", b"9" * 40, b"<!--", b"]]>", b"&amp;", b"x" * 300})
         self.words = sorted({w.encode() for m in self.models[:9] for w in m.read_text().split()} |
                             {b"1e308", b"-1", b"0", b"1e-308", b".nan", b"[]", b"{}", b"9" * 40, b"\n", b"ground", b"x" * 300})
         self.runs = {}
@@ -172,6 +176,13 @@ class Attacks:
         file = self.folder / ("attacked" + source.suffix)
         file.write_bytes(changed(dice, source.read_bytes(), self.words))
         return ended(["check", file], self.folder), [file]
+
+    def robots_attack(self, dice):
+        source = dice.choice(self.robots)
+        file = self.folder / ("attacked" + source.suffix)
+        file.write_bytes(changed(dice, source.read_bytes(), self.robot_words))
+        more = dice.choice(([], ["--allow-partial"]))
+        return ended([dice.choice(("check", "import")), file, *more], self.folder), [file]
 
     def meshes_attack(self, dice):
         source = dice.choice(self.meshes)
@@ -296,7 +307,7 @@ class Attacks:
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    options.add_argument("kinds", nargs="*", metavar="KIND", help="models, meshes, results, checkpoints, kills; left out: all")
+    options.add_argument("kinds", nargs="*", metavar="KIND", help="models, meshes, robots, results, checkpoints, kills; left out: all")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--times", type=float, default=1.0, help="times the attacks of the suite")
     options.add_argument("--seconds", type=float, help="until this time has passed")

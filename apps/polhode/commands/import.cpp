@@ -113,7 +113,7 @@ Action add_import(CLI::App& command) {
   const auto options = std::make_shared<ImportCommand>();
   command
       .add_option("FILE", options->model.file,
-                  "URDF, xacro or MJCF file, or a model that imports one")
+                  "URDF, xacro, MJCF or SDFormat file, or a model that imports one")
       ->required();
   command.add_flag("--report", options->report, "Print the report, which is the default");
   command.add_flag("--json", options->json, "Print it as one JSON object");

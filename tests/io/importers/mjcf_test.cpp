@@ -454,6 +454,13 @@ TEST_F(Mjcf, BodiesAndJointsThatCannotBeReadAreNamed) {
   }
 }
 
+TEST_F(Mjcf, PlanesOfTheWorldAreShapesOfTheFixedBody) {
+  const Model m =
+      read("<worldbody><geom type='plane' size='1 1 0.1' pos='0 0 -1'/><body name='a'>" + kBall +
+           "<freejoint/></body></worldbody>");
+  EXPECT_EQ(m.bodies[0].shapes.size(), 1U);
+}
+
 // A run of the model file that convert writes is that of the file itself.
 TEST_F(Mjcf, TheWrittenModelIsTheSame) {
   const std::string text =

@@ -18,17 +18,18 @@ void IgnoredTags::skip(const Element& parent, std::initializer_list<const char*>
   }
 }
 
-void IgnoredTags::add(int line, const std::string& what, const std::string& why) {
+void IgnoredTags::add(const SourceLocation& place, const std::string& what,
+                      const std::string& why) {
   const auto [found, is_new] = kinds_.try_emplace(what, Kind{notes_.size(), 1});
   if (is_new) {
-    notes_.push_back({ImportNote::Kind::ignored, xml_.place(line), what + " " + why});
+    notes_.push_back({ImportNote::Kind::ignored, place, what + " " + why});
     return;
   }
   notes_[found->second.note].what = format("{} {} ({} times)", what, why, ++found->second.times);
 }
 
 void IgnoredTags::add_unread() {
-  for (const XmlFile::Unread& u : xml_.unread()) add(u.line, u.what, "is unknown");
+  for (const XmlFile::Unread& u : xml_.unread()) add(u.place, u.what, "is unknown");
 }
 
 }  // namespace polhode::io

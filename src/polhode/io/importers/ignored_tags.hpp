@@ -26,13 +26,13 @@ class IgnoredTags {
   void skip(const Element& parent, std::initializer_list<const char*> tags);
   /// A note, or one more of its kind. @param why  The end of the sentence.
   void add(const Element& at, const std::string& what, const std::string& why) {
-    add(xml_.line(at), what, why);
+    add(xml_.place(at), what, why);
   }
   /// Notes on all that has not been read.
   void add_unread();
 
  private:
-  void add(int line, const std::string& what, const std::string& why);
+  void add(const SourceLocation& place, const std::string& what, const std::string& why);
 
   XmlFile& xml_;
   std::vector<ImportNote>& notes_;

@@ -3,14 +3,22 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/importers/mjcf.hpp>
+#include <polhode/io/importers/sdf.hpp>
 #include <polhode/io/importers/urdf.hpp>
 #include <polhode/io/importers/xacro.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 namespace polhode::io {
 
+namespace {
+
+bool is_sdf(const std::string& file) { return file.ends_with(".sdf") || file.ends_with(".world"); }
+
+}  // namespace
+
 bool is_importable(const std::string& file) {
-  return file.ends_with(".urdf") || file.ends_with(".xacro") || file.ends_with(".xml");
+  return file.ends_with(".urdf") || file.ends_with(".xacro") || file.ends_with(".xml") ||
+         is_sdf(file);
 }
 
 Imported import_model(const ImportOptions& options, const std::string& folder) {
@@ -18,6 +26,7 @@ Imported import_model(const ImportOptions& options, const std::string& folder) {
                          ? expanded_by_xacro(options.file, options.arguments)
                          : read_file(options.file);
   auto source = std::make_shared<SourceText>(options.file, std::move(text));
+  if (is_sdf(options.file)) return import_sdf(std::move(source), options, folder);
   return options.file.ends_with(".xml") ? import_mjcf(std::move(source), options, folder)
                                         : import_urdf(std::move(source), options, folder);
 }

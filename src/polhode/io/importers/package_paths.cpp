@@ -39,8 +39,9 @@ std::optional<std::string> find_named_file(const std::string& name, const std::s
   const std::string owner = inside.substr(0, slash), rest = inside.substr(slash + 1);
   for (const std::string& path : paths)
     if (auto found = within(path, owner, rest)) return found;
-  if (const char* listed = std::getenv("ROS_PACKAGE_PATH")) {
-    std::string_view all = listed;
+  for (const char* variable : {"ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH"}) {
+    const char* listed = std::getenv(variable);
+    std::string_view all = listed == nullptr ? "" : listed;
     while (!all.empty()) {
       const std::size_t end = std::min(all.find(':'), all.size());
       if (auto found = within(std::string(all.substr(0, end)), owner, rest)) return found;

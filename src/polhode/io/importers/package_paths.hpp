@@ -8,8 +8,9 @@
 namespace polhode::io {
 
 /// Path of a file that a robot's file names: package://NAME/..., file://..., absolute, or relative
-/// to its folder. A package is looked for in the search paths, then in the folders of
-/// ROS_PACKAGE_PATH, then in the folders above the file, which may be the package itself.
+/// to its folder. A package, or model://NAME/..., is looked for in the search paths, then in the
+/// folders of ROS_PACKAGE_PATH, GZ_SIM_RESOURCE_PATH and GAZEBO_MODEL_PATH, then in the folders
+/// above the file, which may be the package itself.
 /// @returns nothing if there is no such file.
 [[nodiscard]] std::optional<std::string> find_named_file(const std::string& name,
                                                          const std::string& folder,

@@ -27,10 +27,11 @@ struct Pose {
 struct RobotShape {
   const XmlFile::Element* at = nullptr;
   Pose pose;
-  std::string kind;           ///< box, sphere, cylinder, capsule, ellipsoid, mesh, plane.
-  std::vector<double> sizes;  ///< As in a model file: full lengths [m].
-  std::string file;           ///< Of a mesh, as written.
-  Vec3 scale = Vec3::Ones();  ///< Of a mesh.
+  std::string kind;                   ///< box, sphere, cylinder, capsule, ellipsoid, mesh, plane.
+  std::vector<double> sizes;          ///< As in a model file: full lengths [m].
+  std::string file;                   ///< Of a mesh, as written.
+  std::optional<std::string> folder;  ///< To which it is relative; left out: that of the robot.
+  Vec3 scale = Vec3::Ones();          ///< Of a mesh.
 };
 
 struct RobotLink {
@@ -38,6 +39,7 @@ struct RobotLink {
   const XmlFile::Element* at = nullptr;
   bool has_inertial = false;
   bool name_in_file = true;       ///< Not one that stands between the joints of a body.
+  bool weightless = false;        ///< Whether gravity does not act on it.
   geometry::MassProperties mass;  ///< In the link's axes; zero if it has none.
   std::vector<RobotShape> visual, collision;
 };
@@ -52,19 +54,27 @@ struct RobotMimic {
 /// A joint between two links. Its frames on the two coincide where its coordinate is `zero`.
 struct RobotJoint {
   std::string name;
-  std::string type;  ///< revolute, continuous, prismatic, planar, spherical, floating, fixed.
+  /// revolute, continuous, prismatic, planar, spherical, universal, screw, floating, fixed.
+  std::string type;
   std::string parent, child;
   const XmlFile::Element* at = nullptr;
-  Pose origin, on_child;      ///< Its frame in the coordinates of the parent, and of the child.
-  Vec3 axis = Vec3::UnitX();  ///< Unit vector in the joint's frame.
-  double zero = 0.0;          ///< Also its start, unless another one is given [rad, m].
+  Pose origin, on_child;       ///< Its frame in the coordinates of the parent, and of the child.
+  Vec3 axis = Vec3::UnitX();   ///< Unit vector in the joint's frame; on the parent.
+  Vec3 axis2 = Vec3::UnitY();  ///< Of a universal joint: axis on the child, normal to the other.
+  double pitch = 0.0;          ///< Of a screw: displacement per turn [m].
+  bool closes = false;         ///< Closes a loop: its coordinate follows from those of the tree.
+  bool in_loop = false;        ///< One of a loop that such a joint closes, or that joint.
+  double zero = 0.0;           ///< Also its start, unless another one is given [rad, m].
   std::optional<double> lower, upper;
   double damping = 0.0, friction = 0.0, stiffness = 0.0;
   double rest = 0.0;      ///< Coordinate without force of the spring [rad, m].
   double armature = 0.0;  ///< Inertance [kg m², kg].
   std::optional<RobotMimic> mimic;
 
-  [[nodiscard]] bool turns() const { return type == "revolute" || type == "continuous"; }
+  /// Whether its coordinate is an angle.
+  [[nodiscard]] bool turns() const {
+    return type == "revolute" || type == "continuous" || type == "screw";
+  }
   /// Whether it has one coordinate.
   [[nodiscard]] bool is_single() const { return turns() || type == "prismatic"; }
 };
@@ -115,5 +125,8 @@ struct Robot {
 
 /// Axes with this z, and as x the world axis most nearly normal to it, made normal.
 [[nodiscard]] Mat3 axes_along(const Vec3& z);
+
+/// Rotation by roll, pitch, yaw about fixed axes: Rz(yaw) Ry(pitch) Rx(roll).
+[[nodiscard]] Mat3 rotation_of_rpy(const Vec3& rpy);
 
 }  // namespace polhode::io

@@ -2,6 +2,7 @@
 #include <polhode/io/importers/robot_bodies.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -179,7 +180,7 @@ class BodyFormer {
         if (joint.type == "prismatic")
           screw << Vec3::Zero(), axis;
         else
-          screw << axis, frame.p.cross(axis);
+          screw << axis, frame.p.cross(axis) + joint.pitch / (2.0 * std::numbers::pi) * axis;
         screws.push_back(screw);
       }
     }
@@ -222,6 +223,10 @@ class BodyFormer {
       for (const std::string& name : loop.links)
         if (const auto found = tree_.link_index.find(name); found != tree_.link_index.end())
           at(carries, at(tree_.body, found->second)) = true;
+    for (const RobotJoint& joint : robot_.joints)
+      if (joint.closes)
+        for (const std::string& name : {joint.parent, joint.child})
+          at(carries, at(tree_.body, tree_.link_index.at(name))) = true;
     bool again = false;
     light_.clear();
     for (const int i : tree_.order) {

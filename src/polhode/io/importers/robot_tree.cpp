@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -11,6 +13,8 @@
 namespace polhode::io {
 
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Arranger {
  public:
@@ -72,6 +76,8 @@ class Arranger {
             *joint.at,
             format("the joint {} connects {} with itself", quote(joint.name), quote(joint.child)),
             "Name two links.");
+      } else if (joint.closes) {
+        continue;
       } else if (at(tree_.parent_joint, child) >= 0) {
         xml_.fault(
             *joint.at,
@@ -110,7 +116,7 @@ class Arranger {
     }
     std::vector<std::vector<int>> below(robot_.links.size());
     for (std::size_t j = 0; j < robot_.joints.size(); ++j)
-      at(below, tree_.parent[j]).push_back(tree_.child[j]);
+      if (!robot_.joints[j].closes) at(below, tree_.parent[j]).push_back(tree_.child[j]);
     std::vector<int> next = roots;
     while (!next.empty()) {
       const int i = next.back();
@@ -143,10 +149,13 @@ class Arranger {
       tree_.start[j].assign(count, joint.zero);
       const auto given = options_.start.find(joint.name);
       if (given == options_.start.end()) {
-        if (count == 1 && options_.limits) clamp(joint, tree_.start[j][0]);
+        if (count == 1 && options_.limits && !joint.in_loop) clamp(joint, tree_.start[j][0]);
         continue;
       }
-      if (joint.mimic)
+      if (joint.closes)
+        fault_start(joint.name, "closes a loop, so that its start follows from other joints",
+                    "Give the starts of those.");
+      else if (joint.mimic)
         fault_start(joint.name, format("follows another joint by {}", robot_.follows),
                     "Give the start of that one.");
       else if (given->second.size() != count)
@@ -159,8 +168,8 @@ class Arranger {
         const double q = given->second[0];
         if (q < joint.lower.value_or(q) || q > joint.upper.value_or(q))
           fault_start(joint.name,
-                      format("would start at {}, outside its limits {} to {}", q, *joint.lower,
-                             *joint.upper),
+                      format("would start at {}, outside its limits {} to {}", q,
+                             joint.lower.value_or(-kInfinity), joint.upper.value_or(kInfinity)),
                       "Give a start between them.");
       }
     }
@@ -241,6 +250,8 @@ class Arranger {
     Pose motion;
     if (joint.turns()) {
       motion.R = Eigen::AngleAxisd(q[0] - joint.zero, joint.axis).toRotationMatrix();
+      if (joint.type == "screw")
+        motion.p = joint.pitch / (2.0 * std::numbers::pi) * (q[0] - joint.zero) * joint.axis;
     } else if (joint.type == "prismatic") {
       motion.p = (q[0] - joint.zero) * joint.axis;
     } else if (joint.type == "planar") {

@@ -17,13 +17,6 @@ namespace {
 
 using Element = XmlFile::Element;
 
-/// Rotation by roll, pitch, yaw about fixed axes: Rz(yaw) Ry(pitch) Rx(roll).
-Mat3 rotation_of_rpy(const Vec3& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-      .toRotationMatrix();
-}
-
 /// Reader of one file; errors go to its diagnostics.
 class RobotReader {
  public:

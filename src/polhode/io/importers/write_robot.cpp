@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/write_robot.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <numbers>
 #include <set>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/geometry/hull.hpp>
-#include <polhode/geometry/read_surface.hpp>
 #include <polhode/io/importers/node_builder.hpp>
-#include <polhode/io/importers/package_paths.hpp>
 #include <polhode/io/importers/robot_loads.hpp>
+#include <polhode/io/importers/robot_meshes.hpp>
 #include <polhode/io/importers/robot_tree.hpp>
 
 namespace polhode::io {
@@ -22,12 +20,24 @@ namespace {
 
 using Kind = ImportNote::Kind;
 
+/// A name of SDFormat with "__" instead of "::", which needs no note.
+std::string scoped_name(std::string name) {
+  for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at + 2))
+    name.replace(at, 2, "__");
+  return name;
+}
+
 /// Writer of a robot as the content of a model file.
 class ModelWriter {
  public:
   ModelWriter(const Robot& robot, const RobotTree& tree, const ImportOptions& options, XmlFile& xml,
               const std::string& folder, Imported& out)
-      : robot_(robot), tree_(tree), options_(options), xml_(xml), folder_(folder), out_(out) {}
+      : robot_(robot),
+        tree_(tree),
+        options_(options),
+        xml_(xml),
+        out_(out),
+        meshes_(options, xml, folder, out.notes) {}
 
   void write() {
     const NodeBuilder make{xml_.line(xml_.root())};
@@ -37,10 +47,14 @@ class ModelWriter {
       if (at(tree_.body, i) == i) write_body(i, bodies);
     for (const int i : tree_.order)
       if (const int j = at(tree_.parent_joint, i); j >= 0) write_joint(j, joints, loads);
+    for (std::size_t j = 0; j < robot_.joints.size(); ++j)
+      if (robot_.joints[j].closes) write_joint(static_cast<int>(j), joints, loads);
     for (const RobotLoop& loop : robot_.loops) write_loop(loop, joints);
     for (std::size_t j = 0; j < robot_.joints.size(); ++j)
       if (robot_.joints[j].mimic) write_mimic(static_cast<int>(j), loads);
     for (const RobotRow& row : robot_.rows) write_row(row, loads);
+    for (std::size_t i = 0; i < robot_.links.size(); ++i)
+      if (robot_.links[i].weightless) write_weight(static_cast<int>(i), loads);
     if (options_.actuators) write_actuators(loads);
     out_.root = make.map();
     make.put(out_.root, "format", make.text("1"));
@@ -65,12 +79,8 @@ class ModelWriter {
   void note(Kind kind, const XmlFile::Element& e, std::string what) {
     out_.notes.push_back({kind, xml_.place(e), std::move(what)});
   }
-  /// Error, or a note where partial imports are allowed.
   void refuse(const XmlFile::Element& e, const std::string& what, const std::string& hint) {
-    if (options_.allow_partial)
-      note(Kind::left_out, e, what);
-    else
-      xml_.fault(e, what, hint + " Or allow a partial import.");
+    meshes_.refuse(e, what, hint);
   }
 
   /// Names that a model file allows, each once.
@@ -80,7 +90,7 @@ class ModelWriter {
       std::string chosen = allowed_name(name);
       for (int k = 2; !taken.insert(chosen).second; ++k)
         chosen = format("{}_{}", allowed_name(name), k);
-      if (chosen != name)
+      if (chosen != scoped_name(name))
         note(Kind::approximated, e,
              format("{} is called {} in the model", quote(name), quote(chosen)));
       return chosen;
@@ -135,99 +145,25 @@ class ModelWriter {
     for (const RobotShape& shape : visual ? link.visual : link.collision) {
       const NodeBuilder make{xml_.line(*shape.at)};
       SourceNode node = make.map();
+      const Pose pose = in_body(i) * shape.pose;
+      const bool plane = shape.kind == "plane";
       if (shape.kind == "mesh") {
-        if (!write_mesh(shape, make, node)) continue;
+        if (!meshes_.write(shape, make, node)) continue;
+      } else if (plane && !at(tree_.grounded, i)) {
+        note(Kind::ignored, *shape.at, "a plane on a body that moves is not read");
+        continue;
+      } else if (plane) {
+        make.put(node, "plane", make.direction(pose.R.col(2)));
       } else {
         std::vector<SourceNode> sizes;
         for (const double s : shape.sizes) sizes.push_back(make.number(s));
         make.put(node, shape.kind, make.list(std::move(sizes)));
       }
-      const Pose pose = in_body(i) * shape.pose;
       if (!pose.p.isZero(0.0)) make.put(node, "position", make.vector(pose.p));
-      if (!pose.R.isIdentity(0.0))
+      if (!pose.R.isIdentity(0.0) && !plane)
         make.put(node, "orientation", make.orientation(Quat(pose.R).normalized()));
       shapes.children.push_back(std::move(node));
     }
-  }
-
-  /// Mesh as a surface if it is closed, else its convex hull. @returns whether there is one
-  bool write_mesh(const RobotShape& shape, const NodeBuilder& make, SourceNode& node) {
-    const std::string robot_folder = std::filesystem::path(options_.file).parent_path().string();
-    const auto path = find_named_file(shape.file, robot_folder, options_.package_paths);
-    if (!path) {
-      refuse(*shape.at, format("there is no mesh {}", quote(shape.file)),
-             "Give import.package_paths, or import.shapes: none.");
-      return false;
-    }
-    std::string ending = std::filesystem::path(*path).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (ending != ".stl" && ending != ".obj") {
-      const std::string what = format("the mesh {} is not read, as there is no reader of {} files",
-                                      quote(shape.file), ending);
-      if (options_.shapes == "collision")
-        refuse(*shape.at, what, "Convert it to STL or OBJ.");
-      else
-        note(Kind::ignored, *shape.at, what + ": it is a picture only");
-      return false;
-    }
-    try {
-      const geometry::TriangleSurface surface = geometry::read_surface(*path);
-      const double scale = shape.scale.x();
-      const bool uniform = scale > 0.0 && shape.scale == Vec3::Constant(scale);
-      std::string reason = uniform ? "" : "its scale differs by direction or mirrors it";
-      if (uniform) {
-        try {
-          geometry::check_closed(shape.file, surface);
-        } catch (const InputError&) {
-          reason = "its surface is not closed";
-        }
-      }
-      if (!reason.empty())
-        note(
-            Kind::approximated, *shape.at,
-            format("the mesh {} is replaced by its convex hull, as {}", quote(shape.file), reason));
-      std::vector<Vec3> corners = surface.points;
-      for (Vec3& x : corners) x = x.cwiseProduct(shape.scale);
-      const geometry::TriangleSurface hull =
-          reason.empty() ? geometry::TriangleSurface{} : geometry::convex_hull(shape.file, corners);
-      SourceNode given = make.map();
-      if (uniform) {
-        make.put(given, "file", quoted(make, relative(*path)));
-        if (scale != 1.0) make.put(given, "scale", make.number(scale));
-      } else {
-        SourceNode points = make.list();
-        for (const Vec3& x : hull.points) points.children.push_back(make.vector(x));
-        make.put(given, "points", std::move(points));
-      }
-      make.put(node, reason.empty() ? "mesh" : "hull", std::move(given));
-      return true;
-    } catch (const InputError& error) {
-      const std::string what =
-          format("the mesh {} cannot be used: {}", quote(shape.file), error.what_is_wrong());
-      if (options_.shapes == "collision")
-        refuse(*shape.at, what, "Mend it.");
-      else
-        note(Kind::ignored, *shape.at, what + "; it is a picture only");
-    }
-    return false;
-  }
-
-  static SourceNode quoted(const NodeBuilder& make, const std::string& text) {
-    SourceNode node = make.text(text);
-    node.in_quotes = true;
-    return node;
-  }
-
-  /// Path as seen from the model's folder.
-  [[nodiscard]] std::string relative(const std::string& path) const {
-    namespace fs = std::filesystem;
-    std::error_code ignored;
-    const fs::path here =
-        fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_), ignored);
-    return fs::absolute(path, ignored)
-        .lexically_normal()
-        .lexically_proximate(here.lexically_normal())
-        .string();
   }
 
   /// Points and axes of a joint on both links.
@@ -250,7 +186,7 @@ class ModelWriter {
   void write_joint(int j, SourceNode& joints, SourceNode& loads) {
     const RobotJoint& joint = at(robot_.joints, j);
     const int parent = at(tree_.parent, j), child = at(tree_.child, j);
-    if (at(tree_.body, parent) == at(tree_.body, child) || at(tree_.grounded, child)) return;
+    if (!moves(j)) return;
     const NodeBuilder make{xml_.line(*joint.at)};
     const std::string& name = joint_name_.at(joint.name);
     if (joint.type == "floating") {
@@ -262,20 +198,33 @@ class ModelWriter {
       return;
     }
     SourceNode node = make.map();
-    const std::string type = joint.turns() ? "revolute" : joint.type;
+    const bool screw = joint.type == "screw";
+    const std::string type = screw ? "cylindrical" : joint.turns() ? "revolute" : joint.type;
     make.put(node, "type", make.text(type));
     make.put(node, "bodies", bodies_of(make, parent, child));
     put_frames(make, node, in_body(parent) * joint.origin, in_body(child) * at_zero(joint),
-               joint.axis, type != "fixed" && type != "spherical",
+               joint.axis, joint.is_single() || type == "planar",
                joint.turns() || type == "planar");
+    if (type == "universal")
+      make.put(
+          node, "axes",
+          make.list({make.direction(at(tree_.world, parent).R * joint.origin.R * joint.axis),
+                     make.direction(at(tree_.world, child).R * joint.on_child.R * joint.axis2)}));
     if (joint.is_single()) {
       put_limits(make, joint, at(tree_.start, j)[0], node);
-      if (joint.friction > 0.0 && options_.friction) {
+      if (joint.friction > 0.0 && options_.friction && !screw) {
         SourceNode friction = make.map();
         make.put(friction, joint.turns() ? "moment" : "force", make.number(joint.friction));
         make.put(node, "friction", std::move(friction));
       }
       put_joint_loads(make, joint, name, turns_at_start(joint, at(tree_.start, j)[0]), loads);
+      if (screw) {
+        SourceNode thread = make.map();
+        make.put(thread, "type", make.text("screw"));
+        make.put(thread, "joint", make.text(name));
+        make.put(thread, "pitch", make.number(joint.pitch));
+        make.put(loads, name + "_thread", std::move(thread));
+      }
     } else if (type == "spherical") {
       put_ball_loads(make, joint, name, node, loads);
     } else if (type != "fixed" && (joint.damping > 0.0 || joint.friction > 0.0)) {
@@ -287,11 +236,27 @@ class ModelWriter {
     make.put(joints, name, std::move(node));
   }
 
+  /// A force that holds the weight of a link on which gravity does not act.
+  void write_weight(int i, SourceNode& loads) {
+    const RobotLink& link = at(robot_.links, i);
+    const Vec3 force = -link.mass.mass * robot_.gravity;
+    if (at(tree_.grounded, i) || force.isZero(0.0)) return;
+    const NodeBuilder make{xml_.line(*link.at)};
+    SourceNode load = make.map();
+    make.put(load, "type", make.text("force"));
+    make.put(load, "body", make.text(at(link_name_, at(tree_.body, i))));
+    make.put(load, "at_body", make.vector(in_body(i) * link.mass.com));
+    make.put(load, "force", make.vector(force));
+    std::string name = at(link_name_, i) + "_weightless";
+    while (loads.find(name) != nullptr) name += "_2";
+    make.put(loads, name, std::move(load));
+  }
+
   /// Frame of a joint on its child, displaced so that the coordinate is that of the joint.
   static Pose at_zero(const RobotJoint& joint) {
     Pose frame = joint.on_child;
     if (joint.zero == 0.0) return frame;
-    if (joint.turns())
+    if (joint.turns())  // A screw's coordinate is zero at its pose.
       frame.R = frame.R * Eigen::AngleAxisd(joint.zero, joint.axis).toRotationMatrix();
     else
       frame.p += joint.zero * (frame.R * joint.axis);
@@ -306,6 +271,14 @@ class ModelWriter {
   void put_limits(const NodeBuilder& make, const RobotJoint& joint, double start,
                   SourceNode& node) {
     if (!options_.limits || (!joint.lower && !joint.upper)) return;
+    if (joint.in_loop &&
+        start != std::clamp(start, joint.lower.value_or(start), joint.upper.value_or(start))) {
+      note(
+          Kind::approximated, *joint.at,
+          format("the joint {} has no stops, as its loop is closed where it is at {}, outside them",
+                 quote(joint.name), start));
+      return;
+    }
     // An angle counts from between -pi and pi at the start.
     const double turns = turns_at_start(joint, start);
     if (turns != 0.0)
@@ -314,7 +287,7 @@ class ModelWriter {
     SourceNode limits = make.map();
     if (joint.lower) make.put(limits, "lower", make.number(*joint.lower - turns));
     if (joint.upper) make.put(limits, "upper", make.number(*joint.upper - turns));
-    make.put(node, "limits", std::move(limits));
+    make.put(node, joint.type == "screw" ? "angle_limits" : "limits", std::move(limits));
   }
 
   void write_loop(const RobotLoop& loop, SourceNode& joints) {
@@ -345,10 +318,23 @@ class ModelWriter {
     make.put(joints, joint_name_.at(loop.name), std::move(node));
   }
 
+  /// Coordinates of a coupling, if a screw, which has two, is among its joints.
+  static void put_coordinates(const NodeBuilder& make, const std::vector<const RobotJoint*>& joints,
+                              SourceNode& load) {
+    std::vector<SourceNode> list;
+    bool screws = false;
+    for (const RobotJoint* joint : joints) {
+      list.push_back(make.text(joint->turns() ? "rz" : "z"));
+      screws = screws || joint->type == "screw";
+    }
+    if (screws) make.put(load, "coordinates", make.list(std::move(list)));
+  }
+
   /// A coupling of the joints of a row that move; the others have their start in the sum.
   void write_row(const RobotRow& row, SourceNode& loads) {
     const NodeBuilder make{xml_.line(*row.at)};
     std::vector<SourceNode> joints, factors;
+    std::vector<const RobotJoint*> coupled;
     double sum = row.sum, first = 0.0;
     for (std::size_t k = 0; k < row.joints.size(); ++k) {
       const int j = tree_.joint_index.at(row.joints[k]);
@@ -361,11 +347,13 @@ class ModelWriter {
       else
         factors.push_back(make.number(-row.factors[k] / first));
       joints.push_back(make.text(joint_name_.at(row.joints[k])));
+      coupled.push_back(&at(robot_.joints, j));
     }
     if (joints.empty()) return;
     SourceNode load = make.map();
     make.put(load, "type", make.text("coupling"));
     make.put(load, "joints", make.list(std::move(joints)));
+    put_coordinates(make, coupled, load);
     if (!factors.empty()) make.put(load, "factors", make.list(std::move(factors)));
     make.put(load, "offset", make.number(sum / first));
     std::string name = allowed_name(row.name);
@@ -392,7 +380,7 @@ class ModelWriter {
 
   /// Whether a joint moves in the model.
   [[nodiscard]] bool moves(int j) const {
-    return !at(tree_.grounded, at(tree_.child, j)) &&
+    return !(at(tree_.grounded, at(tree_.child, j)) && at(tree_.grounded, at(tree_.parent, j))) &&
            at(tree_.body, at(tree_.parent, j)) != at(tree_.body, at(tree_.child, j));
   }
 
@@ -445,6 +433,9 @@ class ModelWriter {
       }
     }
     make.put(row, "joints", make.list(std::move(joints)));
+    std::vector<const RobotJoint*> coupled{&joint};
+    if (f.factor != 0.0) coupled.push_back(&at(robot_.joints, f.leader));
+    put_coordinates(make, coupled, row);
     if (f.factor != 0.0) make.put(row, "factors", make.list({make.number(f.factor)}));
     make.put(row, "offset", make.number(f.offset));
     make.put(loads, joint_name_.at(joint.name) + "_mimic", std::move(row));
@@ -454,25 +445,14 @@ class ModelWriter {
   const RobotTree& tree_;
   const ImportOptions& options_;
   XmlFile& xml_;
-  const std::string& folder_;
   Imported& out_;
+  RobotMeshes meshes_;
   std::vector<std::string> link_name_;
   std::map<std::string, std::string> joint_name_;
   std::map<int, int> first_follower_;  ///< By leader that moves nothing.
 };
 
 }  // namespace
-
-Mat3 axes_along(const Vec3& z) {
-  int least = 0;
-  z.cwiseAbs().minCoeff(&least);
-  const Vec3 x = Vec3::Unit(least);
-  Mat3 F;
-  F.col(2) = z;
-  F.col(0) = (x - x.dot(z) * z).normalized();
-  F.col(1) = z.cross(F.col(0));
-  return F;
-}
 
 bool write_robot(const Robot& robot, const ImportOptions& options, XmlFile& xml,
                  Diagnostics& diagnostics, const std::string& folder, Imported& out) {

@@ -71,22 +71,72 @@ XmlFile::XmlFile(std::shared_ptr<const SourceText> source, Diagnostics& diagnost
   root_ = document_->RootElement();
   if (root_ == nullptr) refuse(1, "the file has no tag", "Give a file with a model.");
   read_.insert(root_);
+  bytes_ = text.size();
 }
 
-SourceLocation XmlFile::place(int line) const {
-  const std::string_view text = source_->line(line);
+SourceLocation XmlFile::place(const SourceText& source, int line) {
+  const std::string_view text = source.line(line);
   const std::size_t column = text.find_first_not_of(kBlanks);
-  return {source_->name(), line,
+  return {source.name(), line,
           line == 0 ? 0 : 1 + static_cast<int>(column == std::string_view::npos ? 0 : column)};
+}
+
+SourceLocation XmlFile::place(const Element& element) const {
+  const auto found = included_.find(&element);
+  return found == included_.end() ? place(element.GetLineNum())
+                                  : place(*parts_[found->second.part], found->second.own_line);
 }
 
 int XmlFile::line(const Element& element) const {
   const auto found = included_.find(&element);
-  return found == included_.end() ? element.GetLineNum() : found->second;
+  return found == included_.end() ? element.GetLineNum() : found->second.line;
+}
+
+const XmlFile::Element* XmlFile::parse_included(const Element& at, const std::string& name,
+                                                std::string text, tinyxml2::XMLDocument& part) {
+  bytes_ += text.size();
+  const bool sound = bytes_ <= kMostXmlBytes && !declares_entities(text) && is_utf8(text) &&
+                     part.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS &&
+                     part.RootElement() != nullptr;
+  if (!sound) {
+    fault(at, format("the included file {} is not XML, or too large", quote(name)),
+          "Check it, or leave it out.");
+    return nullptr;
+  }
+  parts_.push_back(std::make_shared<SourceText>(name, std::move(text)));
+  diagnostics_.know(parts_.back());
+  return part.RootElement();
+}
+
+void XmlFile::locate(const tinyxml2::XMLNode& copy, const tinyxml2::XMLNode& original, int line) {
+  if (copy.ToElement() != nullptr)
+    included_[copy.ToElement()] = {line, parts_.size() - 1, original.GetLineNum()};
+  const auto* below = original.FirstChild();
+  for (const auto* node = copy.FirstChild(); node != nullptr; node = node->NextSibling()) {
+    locate(*node, *below, line);
+    below = below->NextSibling();
+  }
+}
+
+const XmlFile::Element* XmlFile::include_below(const Element& at, const std::string& path,
+                                               const std::string& name) {
+  tinyxml2::XMLDocument part;
+  const Element* root = nullptr;
+  try {
+    root = parse_included(at, name, read_file(path), part);
+  } catch (const FileError&) {
+    fault(at, format("there is no file {} to include", quote(name)), "Check its name.");
+  }
+  if (root == nullptr) return nullptr;
+  // Tags are handed out as const, but the document belongs to this object.
+  auto* parent = const_cast<Element*>(&at);
+  const tinyxml2::XMLNode* copy = parent->InsertEndChild(root->DeepClone(document_.get()));
+  locate(*copy, *root, line(at));
+  read_.insert(copy->ToElement());
+  return copy->ToElement();
 }
 
 void XmlFile::include_files(const std::string& folder) {
-  bytes_ = source_->text().size();
   const std::function<void(tinyxml2::XMLElement&)> search = [&](tinyxml2::XMLElement& parent) {
     for (tinyxml2::XMLNode* node = parent.FirstChild(); node != nullptr;) {
       tinyxml2::XMLElement* e = node->ToElement();
@@ -110,28 +160,14 @@ tinyxml2::XMLNode* XmlFile::include_file(tinyxml2::XMLElement& include, const st
   const char* given = include.Attribute("file");
   const std::string name = given == nullptr ? "" : given;
   const std::string path = (std::filesystem::path(folder) / name).string();
-  const auto insert = [&](const std::string& text) {
+  const auto insert = [&](std::string text) {
     tinyxml2::XMLDocument part;
-    bytes_ += text.size();
-    const bool sound = bytes_ <= kMostXmlBytes && !declares_entities(text) && is_utf8(text) &&
-                       part.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS &&
-                       part.RootElement() != nullptr;
-    if (!sound) {
-      fault(include, format("the included file {} is not XML, or too large", quote(name)),
-            "Check it, or leave it out.");
-      return;
-    }
-    for (const tinyxml2::XMLNode* child = part.RootElement()->FirstChild(); child != nullptr;
+    const Element* root = parse_included(include, name, std::move(text), part);
+    if (root == nullptr) return;
+    for (const tinyxml2::XMLNode* child = root->FirstChild(); child != nullptr;
          child = child->NextSibling()) {
       last = parent->InsertAfterChild(last, child->DeepClone(document_.get()));
-      const std::function<void(const tinyxml2::XMLNode&)> number =
-          [&](const tinyxml2::XMLNode& node) {
-            if (node.ToElement() != nullptr) included_[node.ToElement()] = at;
-            for (const auto* below = node.FirstChild(); below != nullptr;
-                 below = below->NextSibling())
-              number(*below);
-          };
-      number(*last);
+      locate(*last, *child, at);
     }
   };
   if (name.empty()) {
@@ -198,8 +234,32 @@ std::optional<std::vector<double>> XmlFile::numbers(const Element& element, cons
                                                     std::size_t least, std::size_t most) {
   const auto value = text(element, attribute);
   if (!value) return std::nullopt;
+  return numbers_in(element, format("'{}' of <{}>", attribute, element.Name()), *value, least,
+                    most);
+}
+
+std::optional<std::vector<double>> XmlFile::content_numbers(const Element& element,
+                                                            std::size_t least, std::size_t most) {
+  const auto value = content(element);
+  if (!value) return std::nullopt;
+  return numbers_in(element, format("<{}>", element.Name()), *value, least, most);
+}
+
+std::optional<std::string> XmlFile::content(const Element& element) {
+  const tinyxml2::XMLNode* node = element.FirstChild();
+  while (node != nullptr && node->ToText() == nullptr) node = node->NextSibling();
+  const std::string_view all = node == nullptr ? "" : node->Value();
+  const std::size_t first = all.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return std::nullopt;
+  return std::string(all.substr(first, all.find_last_not_of(kBlanks) - first + 1));
+}
+
+std::optional<std::vector<double>> XmlFile::numbers_in(const Element& element,
+                                                       const std::string& what,
+                                                       const std::string& text, std::size_t least,
+                                                       std::size_t most) {
   std::vector<double> list;
-  std::string_view rest = *value;
+  std::string_view rest = text;
   bool sound = true;
   while (sound && rest.find_first_not_of(kBlanks) != std::string_view::npos) {
     rest.remove_prefix(rest.find_first_not_of(kBlanks));
@@ -213,8 +273,7 @@ std::optional<std::vector<double>> XmlFile::numbers(const Element& element, cons
   const std::string wanted = most == 1       ? "a number"
                              : least == most ? format("{} numbers", most)
                                              : format("{} to {} numbers", least, most);
-  fault(element,
-        format("'{}' of <{}> is {}, not {}", attribute, element.Name(), quote(*value), wanted),
+  fault(element, format("{} is {}, not {}", what, quote(text), wanted),
         most == 1       ? "Give a finite number."
         : least == most ? format("Give {} finite numbers.", most)
                         : format("Give {} to {} finite numbers.", least, most));
@@ -235,12 +294,12 @@ void XmlFile::list_unread(const Element& element, std::vector<Unread>& list) con
   for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
     if (!read_.contains(a) && !std::string_view(a->Name()).starts_with("xmlns"))
       list.push_back(
-          {line(element), format("attribute {} of <{}>", quote(a->Name()), element.Name())});
+          {place(element), format("attribute {} of <{}>", quote(a->Name()), element.Name())});
   for (const Element* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     if (read_.contains(e))
       list_unread(*e, list);
     else
-      list.push_back({line(*e), format("<{}> in <{}>", e->Name(), element.Name())});
+      list.push_back({place(*e), format("<{}> in <{}>", e->Name(), element.Name())});
   }
 }
 

@@ -14,7 +14,7 @@ const FieldTable& import_fields() {
       {
           {.name = "file",
            .kind = kText,
-           .meaning = "URDF, xacro or MJCF file, relative to the folder of this file.",
+           .meaning = "URDF, xacro, MJCF or SDFormat file, relative to the folder of this file.",
            .required = true},
           {.name = "base",
            .kind = kChoice,
@@ -43,7 +43,7 @@ const FieldTable& import_fields() {
           {.name = "actuators",
            .kind = kBoolean,
            .meaning = "Whether actuators are motors and servos, with zero as their set points; "
-                      "URDF has none.",
+                      "URDF and SDFormat have none.",
            .standard = "true"},
           {.name = "allow_partial",
            .kind = kBoolean,
@@ -51,8 +51,8 @@ const FieldTable& import_fields() {
            .standard = "false"},
           {.name = "package_paths",
            .kind = kNames,
-           .meaning = "Folders that contain the packages of package:// names, relative to the "
-                      "folder of this file."},
+           .meaning = "Folders that contain the packages of package:// names and the models of "
+                      "model:// names, relative to the folder of this file."},
           {.name = "start",
            .kind = kVariables,
            .meaning = "Coordinate at the start by joint [rad, m]; left out: 0, or the limit "
