@@ -22,6 +22,7 @@ import hashlib
 import json
 import pathlib
 import random
+import re
 import shutil
 import signal
 import struct
@@ -36,6 +37,7 @@ sys.dont_write_bytecode = True
 from support import program  # noqa: E402
 
 LIMIT = 100.0  # [s] for one command: beyond, it hangs.
+XML_VALUE = rb"""("[^"<]*"|'[^'<]*'|>[^<>]+<)"""  # An attribute's, or the text of a tag.
 INTERNAL_ERROR = 1
 EXIT_CODES = {0, 2, 3, 4, 5, 6, 75}  # docs/reference/cli.md; 1 is a fault of the program.
 # Attacks of a round; the suite runs one round, about two minutes on two cores.
@@ -141,8 +143,9 @@ class Attacks:
         self.meshes = (sorted((ROOT / "tests/solids/mesh/data").glob("*.[miv]*")) + sorted((ROOT / "tests/geometry/data").glob("*")))
         self.meshes = [m for m in self.meshes if m.suffix in (".msh", ".vtu", ".inp", ".stl", ".obj")]
         self.robots = sorted((ROOT / "tests/corpus/robots").glob("*"))
-        self.robot_words = sorted({w for r in self.robots for w in r.read_bytes().replace(b">", b"> ").split()} |
-                                  {b"1e308", b"-1", b"0", b"1e-308", b"nan", b"inf", b"9" * 40, b"<!--", b"]]>", b"&amp;", b"x" * 300})
+        self.values = [r.read_bytes() for r in self.robots]
+        self.values = sorted({v[1:-1] for text in self.values for v in re.findall(XML_VALUE, text)} |
+                             {b"1e308", b"-1", b"0", b"0 0 0", b"1e-308", b"nan", b"inf", b"9" * 40, b"&amp;", b"x" * 300, b""})
         self.words = sorted({w.encode() for m in self.models[:9] for w in m.read_text().split()} |
                             {b"1e308", b"-1", b"0", b"1e-308", b".nan", b"[]", b"{}", b"9" * 40, b"\n", b"ground", b"x" * 300})
         self.runs = {}
@@ -180,7 +183,16 @@ class Attacks:
     def robots_attack(self, dice):
         source = dice.choice(self.robots)
         file = self.folder / ("attacked" + source.suffix)
-        file.write_bytes(changed(dice, source.read_bytes(), self.robot_words))
+        data = source.read_bytes()
+        if dice.random() < 0.7:  # Other values, so that the file remains XML.
+            pieces = re.split(XML_VALUE, data)
+            for _ in range(dice.choice((1, 1, 2, 4))):
+                at = 1 + 2 * dice.randrange(len(pieces) // 2)
+                pieces[at] = pieces[at][:1] + dice.choice(self.values) + pieces[at][-1:]
+            data = b"".join(pieces)
+        else:
+            data = changed(dice, data, self.values)
+        file.write_bytes(data)
         more = dice.choice(([], ["--allow-partial"]))
         return ended([dice.choice(("check", "import")), file, *more], self.folder), [file]
 

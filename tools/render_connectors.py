@@ -133,6 +133,27 @@ def three_rrr(tools):
     return figure
 
 
+def delta_robot(tools):
+    m = tools.Motion("delta_robot")
+    figure, scene, plot = tools.sheet((16, -70), wide=0.9)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 0.5, 3)):
+        tools.draw(scene, m.points("platform", tools.circle(0.078), k), tools.BLUE, alpha, 3)  # Through the wrists.
+        for i in (1, 2, 3):
+            tools.draw(scene, m.points(f"arm_{i}", [[-0.125, 0, 0], [0.125, 0, 0]], k), tools.INK, alpha, 4)
+            tools.draw(scene, m.points(f"arm_{i}", [[0.125, -0.05, 0], [0.125, 0.05, 0]], k), tools.INK, alpha, 3)
+            for side in "ab":
+                tools.draw(scene, m.points(f"rod_{i}{side}", [[-0.25, 0, 0], [0.25, 0, 0]], k), tools.RED, alpha, 1.5)
+    tools.draw(scene, m.place["platform"], tools.GOLD, 1, 1.5)
+    tools.draw(scene, tools.circle(0.2), tools.PALE, 1, 3)
+    tools.fit(scene, (-0.4, -0.4, -0.55), (0.4, 0.4, 0.05), 1.2)
+    for i, colour in zip((1, 2, 3), (tools.RED, tools.BLUE, tools.GOLD)):
+        motor, angle = m.probe(f"motor_{i}"), 2 * np.pi * (i - 1) / 3
+        plot.plot(motor["t"], np.cos(angle) * motor["my"] - np.sin(angle) * motor["mx"], color=colour, label=f"motor {i}")
+    plot.legend(frameon=False, ncol=3)
+    tools.label(plot, "motor torques", y="[N m]")
+    return figure
+
+
 def excavator(tools):
     m = tools.Motion("excavator")
     figure, scene, plot = tools.sheet(flat=True, wide=1.1)

@@ -1,5 +1,5 @@
 # Writes a C++ file with the text of every model file in MODELS (a list), by the name of its folder, and of the other
-# files that it needs, FILES: the meshes beside it.
+# files that it needs, FILES: the meshes and robots beside it.
 function(append_text file)
   file(READ ${file} text)
   string(LENGTH "${text}" length)
@@ -13,7 +13,7 @@ function(append_text file)
   set(code "${code}" PARENT_SCOPE)
 endfunction()
 
-set(code "// Generated from examples/*/model.yaml and the meshes beside them.\n#include \"example_texts.hpp\"\n\n")
+set(code "// Generated from examples/*/model.yaml and the files beside them.\n#include \"example_texts.hpp\"\n\n")
 string(APPEND code "namespace polhode::cli {\n\n")
 string(APPEND code "const std::vector<ExampleText>& example_texts() {\n")
 string(APPEND code "  static const std::vector<ExampleText> list{\n")

@@ -57,6 +57,20 @@ TEST_F(Robot, IsConvertedToAModelWithTheSameResults) {
   EXPECT_THAT(read("page.html"), HasSubstr("position_of"));
 }
 
+TEST_F(Robot, AWorldOfGazeboIsOneToo) {
+  write("hall.world",
+        "<sdf version='1.10'><world name='hall'><model name='m'><link name='a'><inertial><mass>2"
+        "</mass></inertial><sensor/></link><joint name='j' type='revolute'><parent>world</parent>"
+        "<child>a</child><axis><xyz>0 1 0</xyz></axis></joint></model></world></sdf>");
+  const auto report = run({"import", "hall.world", "--json"});
+  ASSERT_EQ(report.code, 0) << report.err;
+  EXPECT_EQ(value(report.out, "format"), "\"SDFormat\"");
+  EXPECT_EQ(value(report.out, "freedoms"), "1");
+  EXPECT_THAT(report.out, HasSubstr("<sensor> in <link> has no influence on the motion"));
+  EXPECT_EQ(run({"convert", "hall.world", "hall.yaml"}).code, 0);
+  EXPECT_EQ(run({"check", "hall.yaml"}).code, 0);
+}
+
 TEST_F(Robot, FaultsAreThoseOfItsLines) {
   write("bad.urdf",
         "<robot name='r'>\n  <link name='a'/>\n  <joint name='j' type='fixed'>\n    <parent "

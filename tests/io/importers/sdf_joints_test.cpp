@@ -225,6 +225,25 @@ TEST_F(SdfJoints, AJointThatClosesALoopKeepsWhatItHas) {
               HasSubstr("closes a loop, so that its start follows from other joints"));
 }
 
+// A start at the limit would open the loop; a joint beside the loop starts there.
+TEST_F(SdfJoints, LimitsThatExcludeThePoseOfALoopAreNoStops) {
+  const std::string limit = "<limit><lower>0.2</lower><upper>1</upper></limit>";
+  const std::string inside =
+      link("a") + link("b", pose("1 0 0 0 0 0")) + link("c", pose("1 0 1 0 0 0")) +
+      link("d", pose("0 0 2 0 0 0")) + joint("j", "revolute", "world", "a", axis("0 1 0", limit)) +
+      joint("k", "revolute", "world", "b", axis("0 1 0")) +
+      joint("l", "revolute", "a", "c", pose("-1 0 0 0 0 0") + axis("0 1 0")) +
+      joint("m", "revolute", "b", "c", axis("0 1 0")) +
+      joint("n", "prismatic", "c", "d", axis("0 0 1", limit));
+  const Model m = read(inside);
+  EXPECT_LT(Simulation(m).start_report().largest_move, kRounding);
+  EXPECT_NEAR(body(m, "d").position.z(), 2.2, kRounding);
+  const std::string said = notes(inside);
+  EXPECT_THAT(said,
+              HasSubstr("the joint 'j' has no stops, as its loop is closed where it is at 0"));
+  EXPECT_THAT(said, HasSubstr("the joint 'n' starts at its limit 0.2, as 0 is outside"));
+}
+
 TEST_F(SdfJoints, AxesOfOldVersionsAreThoseOfTheModel) {
   const std::string inside = model("m", link("b", pose("0 0 0 1.5707963267948966 0 0")) +
                                             joint("j", "revolute", "world", "b", axis("0 0 1")));

@@ -85,6 +85,7 @@ TEST_F(Sdf, PlacementFrameIsWhereThePoseSays) {
                     "<pose>0 0 1 0 1.5707963267948966 0</pose></frame></model></world>"));
   // The tip is at (5, 0, 0) with the axes of the world: the link is turned by -90 degrees.
   EXPECT_NEAR((body(m, "m__a").position - Vec3(6, 0, 0)).norm(), 0.0, kRounding);
+  EXPECT_EQ(m.title, "w");
   EXPECT_EQ(m.gravity, Vec3(0, 0, -9.8));
 }
 

@@ -48,8 +48,6 @@ class SdfReader {
     world.at = &root;
     robot_.links.push_back(std::move(world));
     read_root(root, place);
-    if (robot_.links.size() < 2)
-      xml_.fault(root, "the file has no link", "Add <model> with <link> to it.");
     frames_.connect();
     fill();
     return std::move(robot_);
@@ -270,6 +268,8 @@ Imported import_sdf(std::shared_ptr<const SourceText> source, const ImportOption
   XmlFile xml(source, diagnostics);
   const std::string own_folder = std::filesystem::path(options.file).parent_path().string();
   const Robot robot = SdfReader(xml, options, result.notes).read(own_folder);
+  if (robot.links.size() < 2 && diagnostics.empty())
+    xml.fault(xml.root(), "the file has no link", "Add <model> with <link> to it.");
   diagnostics.throw_if_any();
   write_robot(robot, options, xml, diagnostics, folder, result);
   diagnostics.throw_if_any();
