@@ -247,3 +247,7 @@ def test_a_robot_is_a_model(tmp_path: pathlib.Path) -> None:
     m.check()
     with pytest.raises(polhode.ModelError):
         polhode.load(tmp_path / "robot.urdf", base="flying")
+    (tmp_path / "robot.sdf").write_text(
+        "<sdf version='1.10'><model name='r'><link name='leg'/><joint name='hip' type='ball'><parent>world</parent>"
+        "<child>leg</child></joint></model></sdf>")
+    assert polhode.load(tmp_path / "robot.sdf").joints["hip"].type == "spherical"

@@ -186,6 +186,7 @@ CASES = [example("tumbling_body", 1e-2, 0.4, "A T-handle that turns over in free
          example("suspension_corner", 1e-3, 0.1, "Bushings, strut and tyre on a shaker."),
          example("excavator", 5e-3, 0.5, "Three cylinders move an arm.", floor=1e-8), example("stewart_platform", 2e-3, 0.1, "Six legs move a platform.", floor=1e-7),
          example("three_rrr", 2e-3, 0.1, "Three motors carry a plate.", floor=1e-7),
+         example("delta_robot", 2e-3, 0.1, "Three motors carry a platform by six rods.", floor=1e-7),
          example("geneva_drive", 2e-3, 0.3, "A pin enters a slot."),
          example("trebuchet", 2e-3, 0.3, "A latch opens and the sling's trough is left.", floor=1e-8), example("cable_crane", 5e-3, 0.4, "A rope runs over sheaves to a hook."),
          example("arm_with_muscles", 2e-3, 0.2, "Two muscles bend an elbow."), example("bicycle", 2e-3, 0.2, "Wheels that roll, steered to stay upright."), cat(), driven_governor(), four_bar(), squeezer(), bricard(), governor(), door(), beam_four_bar(), beam_four_bar_resolved(), solid_four_bar(), spinning_bar(), spinning_bar_resolved(), panel(), panel_reaction(),
