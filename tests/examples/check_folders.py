@@ -4,6 +4,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
 FILES = ("README.md", "model.yaml", "check.py", "picture.png")
@@ -11,7 +12,11 @@ LARGEST_PICTURE = 150_000  # bytes
 
 
 def polhode(*arguments):
-    return subprocess.run([os.environ.get("POLHODE", "polhode"), *arguments], stdout=subprocess.PIPE, check=True).stdout
+    program = os.environ.get("POLHODE", "polhode")
+    if os.sep in program:
+        program = os.path.abspath(program)
+    with tempfile.TemporaryDirectory() as folder:  # Meshes that a model needs are written beside it.
+        return subprocess.run([program, *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True, cwd=folder).stdout
 
 
 def main():
