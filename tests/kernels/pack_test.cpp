@@ -69,6 +69,7 @@ TEST(Pack, KeepsWhatIsNotANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const simd::Pack x = {1.0, nan}, y = {2.0, 0.0};
   EXPECT_TRUE(std::isnan(simd::max_keeping_nan(y, x)[1]));
+  EXPECT_TRUE(std::isnan(simd::max_keeping_nan(x, y)[1]));
   EXPECT_TRUE(std::isnan(simd::largest(x)));
   EXPECT_EQ(simd::largest(y), 2.0);
 }

@@ -27,7 +27,7 @@ void check_block(const TreeView& v, const int* body_of_slot, int block, LaneChec
     }
     for (int i = 0; i < kWidth; ++i) {
       if (body_of_slot[block * kLanes + at + i] < 0) continue;
-      if (!(most[i] <= c.largest)) {
+      if (!(most[i] <= c.largest) && c.largest == c.largest) {
         c.largest = most[i];
         c.worst_slot = block * kLanes + at + i;
       }

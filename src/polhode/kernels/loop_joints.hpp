@@ -256,7 +256,7 @@ void check_loop_joints(const TreeView& v, const LoopJoints& block, LaneCheck& c)
         size += lambda;
     }
     for (int i = 0; i < kWidth && at + i < block.count; ++i) {
-      if (!(most[i] <= c.largest)) {
+      if (!(most[i] <= c.largest) && c.largest == c.largest) {
         c.largest = most[i];
         c.worst_slot = -1;
         c.worst_row = block.row[at + i];

@@ -25,15 +25,20 @@ POLHODE_INLINE Pack load(const double* p) { return *reinterpret_cast<const Pack*
 POLHODE_INLINE void store(double* p, Pack x) { *reinterpret_cast<Pack*>(p) = x; }
 POLHODE_INLINE Pack abs(Pack a) { return (Pack)((Mask)a & 0x7fffffffffffffffLL); }
 POLHODE_INLINE Pack max(Pack a, Pack b) { return a > b ? a : b; }
-POLHODE_INLINE Pack max_keeping_nan(Pack a, Pack b) { return b <= a ? a : b; }
+/// The larger one; NaN if one of them is.
+POLHODE_INLINE Pack max_keeping_nan(Pack a, Pack b) {
+  const Mask first = (Mask)(b <= a) | (Mask)(a != a);
+  return first ? a : b;
+}
 POLHODE_INLINE Pack sqrt(Pack a) {
   Pack r;
   for (int i = 0; i < kWidth; ++i) r[i] = __builtin_sqrt(a[i]);
   return r;
 }
+/// The largest one; NaN if one of them is.
 POLHODE_INLINE double largest(Pack a) {
   double m = a[0];
-  for (int i = 1; i < kWidth; ++i) m = a[i] <= m ? m : a[i];
+  for (int i = 1; i < kWidth; ++i) m = a[i] <= m || m != m ? m : a[i];
   return m;
 }
 POLHODE_INLINE double sum(Pack a) {
