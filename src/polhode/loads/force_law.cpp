@@ -74,7 +74,8 @@ double refine(const TimeFunction& f, double p, double q, const Estimate& whole, 
   const double both = 0.5 * (left.mean + right.mean);
   size = std::max({size, left.size, right.size});
   const bool agree = std::abs(both - whole.mean) * part <= kAgree * size;
-  if (agree || halvings == 0 || !(m != p && m != q)) return both;
+  // Without a value at a place, halves never agree.
+  if (agree || !std::isfinite(both) || halvings == 0 || !(m != p && m != q)) return both;
   return 0.5 * (refine(f, p, m, left, 0.5 * part, size, halvings - 1) +
                 refine(f, m, q, right, 0.5 * part, size, halvings - 1));
 }
