@@ -17,23 +17,16 @@ namespace {
 constexpr double kSameTime = 1e-9;
 constexpr const char* kSeeAtStart = "Use a channel that is available at the start";
 
-/// Names the function of time that makes a step fail, if one does.
-void explain(const Model& model, const State& state, bool statics, StepReport& report) {
-  if (report.accepted) return;
-  // From the last step on, which may have ended where a function is not finite: forces are taken
-  // within steps.
-  const double from = std::max(0.0, state.t - state.dt_last);
-  const double end = statics ? model.analysis.history.value_or(1.0) : model.analysis.duration;
-  const double rest = end - state.t;
-  const double step = state.dt_last > 0.0 ? state.dt_last : rest;
-  const double to = state.t + (statics ? rest : model.analysis.step.value_or(step));
-  const std::string cause = not_finite_in(model, from, to);
-  if (!cause.empty()) report.message = cause;
+/// Refuses a start at which a function of time has no value.
+void refuse_infinite_start(const Model& model) {
+  const NotFinite found = not_finite_at_start(model);
+  if (!found.place.empty()) throw InputError(found.place, found.text, "Correct its function");
 }
 
 }  // namespace
 
 Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
+  refuse_infinite_start(impl_->model);
   impl_->watch(*this);
   impl_->start_consistently();
   if (!impl_->controllers) return;
@@ -54,6 +47,22 @@ Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(
   if (impl_->controllers) impl_->controllers->resume(impl_->state);
 }
 
+/// Names the load that makes a step fail by having no value, if one does.
+void Simulation::Impl::explain(StepReport& report) {
+  if (report.accepted) return;
+  // From the last step on, which may have ended where a function is not finite: forces are taken
+  // within steps.
+  const double from = std::max(0.0, state.t - state.dt_last);
+  const double rest =
+      (statics ? model.analysis.history.value_or(1.0) : model.analysis.duration) - state.t;
+  const double step = state.dt_last > 0.0 ? state.dt_last : rest;
+  const double to = state.t + (statics ? rest : model.analysis.step.value_or(step));
+  NotFinite cause = not_finite_in(model, from, to);
+  if (cause.place.empty())
+    cause = not_finite_ahead(model, system, map, state, at_instant(), statics ? state.t : to);
+  if (!cause.place.empty()) report.message = cause.text;
+}
+
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
@@ -70,7 +79,7 @@ StepReport Simulation::step(double t_limit) {
         "Give a later time; the end of the analysis may have been reached");
   const double wall = wall_clock(), cpu = cpu_clock();
   StepReport report = advance(t_limit);
-  explain(impl_->model, impl_->state, impl_->statics != nullptr, report);
+  impl_->explain(report);
   impl_->figures.wall_time_s += wall_clock() - wall;
   impl_->figures.cpu_time_s += cpu_clock() - cpu;
   return report;
@@ -114,7 +123,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       break;
     }
     if (!report.accepted) {
-      explain(s.model, s.state, s.statics != nullptr, report);
+      s.explain(report);
       s.figures.end = RunEnd::not_converged;
       s.figures.message = report.message;
       s.watch_stretches();
@@ -132,6 +141,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
     const EventSpec& event = s.map.events[static_cast<std::size_t>(s.events->stopped(s.state))];
     s.figures.message = format("stopped by event '{}' at t = {:.9g} s", event.name, s.state.t);
   }
+  if (!s.statics) s.pole = endless_in(s.model, s.state.t).text;
   s.figures.wall_time_s += wall_clock() - wall;
   s.figures.cpu_time_s += cpu_clock() - cpu;
   return summary();
@@ -164,6 +174,7 @@ RunSummary Simulation::summary() const {
   r.narration = s.narration;
   r.warnings = s.warnings();
   if (!s.statics) r.distrust = reasons_for_distrust(s.model, s.system, l);
+  if (!s.pole.empty()) r.distrust.push_back(s.pole);
   for (const std::string& reason : r.distrust) r.warnings.push_back("not trusted: " + reason);
   for (int e = 0; e < static_cast<int>(s.map.events.size()); ++e) {
     const auto of = [&](EventMemory::Entry k) { return s.events->memory(s.state, e, k); };

@@ -59,6 +59,8 @@ struct Simulation::Impl {
   StartReport start_report;
   RunSummary figures;  ///< Times, end and message; other figures are in the state.
   std::string narration, engine_name;
+  std::string
+      pole;  ///< Names a function of time without bounds in the last run(), if there is one.
   double start_seconds = 0.0, output_seconds = 0.0;
   // Instantaneous results, computed once per state.
   std::unique_ptr<InstantSolver> instant_solver;
@@ -152,6 +154,7 @@ struct Simulation::Impl {
     instant_step = -1;
     for (SolidWatch& watch : solid_watches) watch.step = -1;
   }
+  void explain(StepReport& report);
   void settle_step() {
     contacts.after_step(state);
     watch_surfaces();
