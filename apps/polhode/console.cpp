@@ -62,6 +62,11 @@ void print(const std::string& text) {
     throw io::FileError::from_errno("stdout", "cannot be written");
 }
 
+bool shows_colours() {
+  const char* none = std::getenv("NO_COLOR");
+  return ::isatty(STDOUT_FILENO) == 1 && (none == nullptr || *none == '\0');
+}
+
 namespace {
 
 /// Whether a cell is a number, with or without a unit: "12", "-1.5e-3", "3.2 ms"; but not a version

@@ -34,6 +34,9 @@ void say(const std::string& line);
 /// Prints text on stdout, unchanged. @throws FileError if stdout cannot be written.
 void print(const std::string& text);
 
+/// Whether stdout is a terminal for which NO_COLOR is not set (https://no-color.org).
+[[nodiscard]] bool shows_colours();
+
 /// Table with columns of the width of their widest cell; numbers, with or without a unit, are
 /// aligned right.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows,

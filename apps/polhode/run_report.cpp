@@ -102,7 +102,7 @@ std::string parties_text(const RunSummary::Contacts& c) {
   return format("{} shapes", c.shapes) + (c.surfaces > 0 ? " and " + surfaces : "");
 }
 
-std::string summary_table(const RunSummary& s) {
+std::string summary_table(const RunSummary& s, bool colour) {
   const auto small = [](double x) { return format("{:.1e}", x); };
   const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
   std::vector<std::vector<std::string>> rows{
@@ -163,7 +163,11 @@ std::string summary_table(const RunSummary& s) {
   for (const auto& [name, value] : s.phases) rows.push_back({"  " + name, seconds(value)});
   rows.push_back({"solver", s.solver, s.instruction_set});
   rows.push_back({"result hash", s.result_hash.substr(0, 16)});
-  return table(rows);
+  const std::string text = table(rows);
+  if (!colour || s.energy_drift <= kBadDrift) return text;
+  const std::size_t begin = text.find("energy drift"), end = text.find('\n', begin);
+  return text.substr(0, begin) + "\033[31m" + text.substr(begin, end - begin) + "\033[0m" +
+         text.substr(end);
 }
 
 }  // namespace polhode::cli

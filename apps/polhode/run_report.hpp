@@ -20,7 +20,11 @@ namespace polhode::cli {
 /// Summary of a static analysis, and of a run: ledger of energy and momenta, constraints,
 /// iterations, time by phase, as text.
 [[nodiscard]] std::string statics_table(const RunSummary& summary);
-[[nodiscard]] std::string summary_table(const RunSummary& summary);
+/// @param colour  The energy drift in red above kBadDrift.
+[[nodiscard]] std::string summary_table(const RunSummary& summary, bool colour = false);
+
+/// Energy drift above which it is shown in red, here and on pages of the viewer [-].
+inline constexpr double kBadDrift = 1e-3;
 
 /// Provenance of the results of a run of this model. @throws FileError
 [[nodiscard]] io::Provenance provenance_of(const ModelArguments& model, const RunSummary& summary);

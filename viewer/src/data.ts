@@ -26,7 +26,7 @@ export interface BeamEntry { name: string; line?: number; section?: string; heig
 export interface CableEntry { name: string; line?: number; radius?: number }
 export interface ChannelEntry { path: string; unit: string; dims: number[]; data: Packed }
 export interface Manifest {
-  format: string; version: number; title: string; name?: string; compared?: string; frames: number; file_frames: number; time: number[]; statics: boolean;
+  format: string; version: number; title: string; name?: string; compared?: string; frames: number; file_frames: number; time: number[]; statics: boolean; energy_drift?: number;
   cut_short: boolean; notes: string[]; gravity?: Triple;
   source: { file: string; text: string; overrides: string[]; version: string; solver: string };
   meshes: MeshEntry[]; bodies: BodyEntry[]; joints: JointEntry[]; loads: LoadEntry[]; solids: SolidEntry[];

@@ -158,7 +158,7 @@ async function start(app: HTMLElement): Promise<void> {
   holder.append(ruler);
 
   const balance = await scene.channel("energy/drift");
-  const drift_of_run = balance?.length ? balance[balance.length - 1] : 0;
+  const drift_of_run = m.energy_drift ?? 0;
   const tick = (): void => {
     view.set(player.t);
     const f = view.poses.frame + view.poses.part;

@@ -16,6 +16,8 @@ await test("recordings in an archive share the player", async () => {
     expect(!(await page.evaluate(() => document.documentElement.dataset.failed)), await page.locator("#app").textContent());
     expect(await colours(page) > 30, "the picture is empty");
   }
+  const player = readFileSync(join(folder, "both/player.js"), "utf8");
+  for (const notice of ["three.js authors", "Leon Sorokin", "Permission is hereby granted"]) expect(player.includes(notice), `player.js lacks '${notice}'`);
   const list = readFileSync(join(folder, "both/index.html"), "utf8");
   expect(list.includes('<a href="all.html">all</a> Everything, 101 frames') && list.includes('href="tyre.html"'), list);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opening and playback of the page: time, bookmark, phone, dark theme, accessibility.
-import { clock, colours, expect, page_of, picture, shot, test, violations } from "./support.mjs";
+import { clock, colours, expect, page_of, picture, recorded, run, shot, test, violations } from "./support.mjs";
 
 await test("the saved file opens without network and shows a picture", async () => {
   const { page } = await page_of("all.html");
@@ -8,6 +8,30 @@ await test("the saved file opens without network and shows a picture", async () 
   expect(await colours(page) > 40, "the picture is empty");
   expect((await page.locator(".drift").textContent()).includes("energy drift"), "no energy drift in view");
   await shot(page, "all");
+});
+
+// A stiff oscillator that numerical dissipation damps at a coarse step, not at a hundredth of it.
+const stiff = (step) => `format: 1
+bodies: {a: {mass: 1, inertia: [1, 1, 1], position: [1.1, 0, 0]}}
+joints: {guide: {type: prismatic, bodies: [ground, a], at: [0, 0, 0], axis: x}}
+loads: {s: {type: spring_damper, bodies: [ground, a], at: [[0, 0, 0], [1.1, 0, 0]], stiffness: 1000, free_length: 1}}
+analysis: {duration: 0.2 s, step: ${step}, rho_inf: 0}
+`;
+
+await test("the energy drift is that of the summary, in red above a thousandth", async () => {
+  const colour = {};
+  for (const [name, step] of [["coarse", "20 ms"], ["fine", "0.2 ms"]]) {
+    recorded(name, stiff(step));
+    const { energy_drift } = JSON.parse(run("run", `${name}.yaml`, "--json", "--quiet", "-o", "again"));
+    const { page } = await page_of(`${name}.html`);
+    const drift = page.locator(".drift"), text = await drift.textContent();
+    expect(text.includes(`(${energy_drift.toExponential(1)} at the end)`), `the page says '${text}', the summary ${energy_drift}`);
+    expect(energy_drift > 1e-3 === (name === "coarse"), `the drift is ${energy_drift}`);
+    expect(await drift.evaluate((e) => e.classList.contains("bad")) === energy_drift > 1e-3, `${name}: the wrong colour`);
+    colour[name] = await drift.evaluate((e) => getComputedStyle(e).color);
+  }
+  const [red, green, blue] = colour.coarse.match(/\d+/g).map(Number);
+  expect(red > green + 100 && red > blue + 100 && colour.fine !== colour.coarse, `the colours are ${JSON.stringify(colour)}`);
 });
 
 await test("it plays, pauses, and starts again at the end", async () => {

@@ -155,7 +155,7 @@ int run(const RunOptions& options) {
     say(format("Stopped at t = {:.6g} s{}. Continue with:  polhode run {} --restart {}", summary.t,
                code == kLimit ? " at the wall-time limit" : "", options.model.file, checkpoint));
   if (!options.json && !options.quiet)
-    print(summary.statics ? statics_table(summary) : summary_table(summary));
+    print(summary.statics ? statics_table(summary) : summary_table(summary, shows_colours()));
   std::string json = options.json ? summary_json(summary, code, folder, recorder.frames()) : "";
   if (options.certify && code == kOk) {
     CertifyRequest request = options.certificate;

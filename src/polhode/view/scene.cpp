@@ -140,6 +140,10 @@ SceneData make_scene(const io::ResultsReader& results, const Model* model,
                      {"version", results.attribute(group, "version")},
                      {"solver", results.attribute(group, "solver")}}}};
   if (model != nullptr) manifest["gravity"] = json_of(model->gravity);
+  // The drift of the run is that at its last frame, which the page may leave out.
+  const std::string drift = std::string(io::results::kEnergy) + "/drift";
+  if (results.has(drift) && results.frames() > 0)
+    manifest["energy_drift"] = results.read(drift).back();
   if (model == nullptr && !model_text(results).empty())
     manifest["notes"].push_back("The model of these results cannot be read: shapes are not known.");
   add_bodies(manifest, chunks, results, model, options);
