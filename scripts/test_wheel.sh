@@ -43,6 +43,16 @@ for part in ["THIRD_PARTY.md", "LICENSE", "mumps", "openblas", "hdf5", "LGPL-2.1
     assert any(part in name for name in licences), (part, licences)
 told = subprocess.run([command, "doctor", "--licences"], check=True, capture_output=True, text=True).stdout
 assert told == open(polhode.__path__[0] + "/THIRD_PARTY.md").read() and "three.js" in told
+listed = [line.split("|")[1].strip() for line in told.splitlines() if line.startswith("| ") and "https://" in line]
+for part in ["Eigen", "fmt", "yaml-cpp", "HDF5", "three.js", "uPlot", "nanobind", "CLI11"]:
+    assert part in listed, (part, listed)
+in_package = next(f for f in metadata.files("polhode") if str(f).endswith("licenses/THIRD_PARTY.md"))
+assert in_package.read_text() == told
+# Pages keep the notices of what they contain.
+subprocess.run([command, "view", "pendulum.yaml", "--html", "page.html", "--quiet"], check=True)
+page = open("page.html").read()
+for notice in ["three.js authors", "Leon Sorokin", "Permission is hereby granted"]:
+    assert notice in page, notice
 import numpy as np
 
 m = polhode.Model(analysis={"duration": 1, "step": 0.01})
