@@ -2,7 +2,9 @@
 // Automatic steps where estimates from earlier steps, or all estimates of the error, are
 // misleading.
 #include <cmath>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -47,6 +49,37 @@ double bounced(double e, double t) {
   return -drop + std::max(0.0, v * s - 0.5 * g * s * s);
 }
 
+/// Position of the lower body of a pendulum of two, at the end of a run that ends at each of the
+/// times and is continued with a longer duration.
+Vec3 swung_on(int order, double tolerance, const std::vector<double>& ends) {
+  std::optional<State> reached;
+  Vec3 end = Vec3::Zero();
+  for (const double T : ends) {
+    const Model m = with(format(R"(
+format: 1
+gravity: [0, 0, -9.81]
+bodies:
+  upper: {{shape: {{box: [1, 0.05, 0.05]}}, density: 1000, position: [0.5, 0, 0]}}
+  lower: {{shape: {{box: [1, 0.05, 0.05]}}, density: 1000, position: [1.5, 0, 0]}}
+joints:
+  A: {{type: revolute, bodies: [ground, upper], at: [0, 0, 0], axis: y}}
+  B: {{type: spherical, bodies: [upper, lower], at: [1, 0, 0]}}
+loads: {{push: {{type: force, body: lower, force: ['t > 0.31 ? 30 : 0', 0, '20*sin(9*t)']}}}}
+analysis: {{duration: {}}}
+)",
+                                T),
+                         order, tolerance);
+    Simulation s = reached ? Simulation(m, *reached) : Simulation(m);
+    const RunSummary r = s.run();
+    EXPECT_EQ(r.end, RunEnd::finished) << r.message;
+    EXPECT_EQ(r.t, T);
+    EXPECT_LT(r.energy_drift, 1e-10);
+    reached = s.state();
+    end = s.body(1).r;
+  }
+  return end;
+}
+
 class Stops : public testing::TestWithParam<double> {};
 
 /// Impacts within the stop's band, whose time is uncertain by band over speed: 2e-5 s here.
@@ -79,6 +112,24 @@ loads:
 analysis: {{duration: 3 s}}
 )",
                 mass, mass / 12.0);
+}
+
+// The mechanism is 2 m long, and the tolerance relative to that.
+TEST(AutomaticSteps, OfContinuedRunsEndWithinTheToleranceOfARunInOneGo) {
+  const Vec3 right = swung_on(8, 1e-11, {1.0});
+  for (const int order : {2, 6, 8})
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+      if (order == 2 && tolerance < 1e-6) continue;  // 80,000 steps
+      const Vec3 whole = swung_on(order, tolerance, {1.0});
+      EXPECT_LT((whole - right).norm(), 2.0 * tolerance) << order << ' ' << tolerance;
+      for (const double stop : {0.01, 0.3, 0.7777}) {
+        const Vec3 continued = swung_on(order, tolerance, {stop, 1.0});
+        RecordProperty(format("order_{}_tolerance_{:g}_stop_{:g}", order, tolerance, stop),
+                       format("{:.1e}", (continued - whole).norm()));
+        EXPECT_LT((continued - whole).norm(), 2.0 * tolerance)
+            << order << ' ' << tolerance << ' ' << stop;
+      }
+    }
 }
 
 /// @tests{step-halves}

@@ -62,7 +62,7 @@ TEST(StepEnds, AreOneWhereAnEventMeetsAKink) {
 TEST(StepEnds, AreOneWhereAnEventMeetsAnOutput) {
   for (const char* how :
        {"step: auto, tolerance: 1e-4", "step: auto, tolerance: 1e-6", "step: auto, tolerance: 1e-8",
-        "step: auto, tolerance: 1e-6, order: 2", "step: 5 ms"})
+        "step: auto, tolerance: 1e-6, order: 2", "step: 20 ms", "step: 5 ms", "step: 0.05 ms"})
     for (const double level : {0.04, 0.28, 0.56, 1.12, 1.9})
       expect_event(driven_arm("\"2*t\"", level, format("duration: 1 s, {}", how),
                               "output: {every: 10 ms, hdf5: false}\n"),
@@ -131,9 +131,11 @@ TEST(StepEnds, GivenByTheUserAreReached) {
 
 // A run that ends where an event is due, and one that goes on from there.
 TEST(StepEnds, OfARunIsThatOfItsEvent) {
-  for (const double level : {0.06, 0.28, 0.56}) {
-    const auto text = [&](double T) {
-      return driven_arm("\"2*t\"", level, format("duration: {} s, step: 5 ms", T));
+  for (const auto& [level, step] :
+       {std::pair{0.28, "20 ms"}, std::pair{0.06, "5 ms"}, std::pair{0.28, "5 ms"},
+        std::pair{0.56, "5 ms"}, std::pair{0.28, "0.05 ms"}}) {
+    const auto text = [&, level = level, step = step](double T) {
+      return driven_arm("\"2*t\"", level, format("duration: {} s, step: {}", T, step));
     };
     Simulation whole = made(text(0.4));
     (void)finished(whole);
