@@ -56,6 +56,7 @@ Action add_gradient(CLI::App& command);
 Action add_modes(CLI::App& command);
 Action add_view(CLI::App& command);
 Action add_plot(CLI::App& command);
+Action add_report(CLI::App& command);
 Action add_convert(CLI::App& command);
 Action add_import(CLI::App& command);
 Action add_check(CLI::App& command);

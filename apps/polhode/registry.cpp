@@ -22,6 +22,7 @@ const std::vector<Command>& commands() {
       {"modes", "Natural frequencies and shapes of a model about its equilibrium", add_modes},
       {"view", "Show results, or a model before it runs, as an animation in a browser", add_view},
       {"plot", "Draw channels of results over time, as an SVG picture", add_plot},
+      {"report", "Write a report of results: extremes, plots, ledger, model", add_report},
       {"convert",
        "Write results as a table, a scene for other programs, or a film; a robot's file as a model",
        add_convert},

@@ -98,6 +98,15 @@ io::ResultsReader open_results(const std::string& path) {
   return results;
 }
 
+std::string time_label(const io::ResultsReader& results, const std::string& path) {
+  try {
+    const auto folder = fs::absolute(path).parent_path().string();
+    if (model_of_results(results, folder).analysis.type == "statics") return "load factor [-]";
+  } catch (const std::exception&) {  // Without the model only the time is left.
+  }
+  return "t [s]";
+}
+
 SceneData scene_of(const ViewRequest& request) {
   SceneOptions options;
   options.max_frames = request.frames;

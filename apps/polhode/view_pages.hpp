@@ -26,6 +26,9 @@ struct ViewRequest {
 /// Reader of such a file; warns of one that is cut short. @throws FileError
 [[nodiscard]] io::ResultsReader open_results(const std::string& path);
 
+/// Name of the abscissa of plots of these results: the time, or the load factor of statics.
+[[nodiscard]] std::string time_label(const io::ResultsReader& results, const std::string& path);
+
 /// Scene of results, or of a model at its assembled start with its mobility and redundant joints.
 /// @throws FileError, ModelErrors, InputError
 [[nodiscard]] SceneData scene_of(const ViewRequest& request);

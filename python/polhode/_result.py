@@ -194,6 +194,7 @@ class Result:
         if trusted := self._store.attribute("/provenance", "trusted"):
             figures["trusted"] = trusted == "yes"
             figures["distrust"] = str(self._store.attribute("/provenance", "distrust") or "").splitlines()
+            figures["warnings"] = str(self._store.attribute("/provenance", "warnings") or "").splitlines()
         return figures
 
     @property

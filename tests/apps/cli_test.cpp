@@ -21,11 +21,11 @@ using testing::StartsWith;
 TEST_F(CommandLine, SuggestsACommandForAMisspeltOne) {
   const auto result = run({"rum", "model.yaml"});
   EXPECT_EQ(result.code, 2);
-  EXPECT_EQ(
-      result.err,
-      "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, "
-      "gradient, modes, view, plot, convert, import, check, info, schema, examples, doctor. Run "
-      "'polhode --help' for its options.\n");
+  EXPECT_EQ(result.err,
+            "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, "
+            "gradient, modes, view, plot, report, convert, import, check, info, schema, examples, "
+            "doctor. Run "
+            "'polhode --help' for its options.\n");
 }
 
 TEST_F(CommandLine, SuggestsAnOptionForAMisspeltOne) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <memory>
 
 #include <polhode/core/format.hpp>
@@ -18,15 +17,6 @@ struct PlotOptions {
   std::string results, output;
   std::vector<std::string> channels;
 };
-
-std::string time_label(const io::ResultsReader& results, const std::string& path) {
-  try {
-    const auto folder = std::filesystem::absolute(path).parent_path().string();
-    if (model_of_results(results, folder).analysis.type == "statics") return "load factor [-]";
-  } catch (const std::exception&) {  // Without the model only the time is left.
-  }
-  return "t [s]";
-}
 
 }  // namespace
 

@@ -200,22 +200,20 @@ std::string channels_csv(const io::ResultsReader& results, const std::vector<std
   return text;
 }
 
-std::string channels_svg(const io::ResultsReader& results, const std::vector<std::string>& names,
-                         const std::string& time_label) {
+std::string panels_svg(const std::vector<CurvePanel>& panels, const std::string& time_label) {
   constexpr double kWidth = 720.0, kHeight = 190.0, kLeft = 84.0, kTop = 34.0, kStep = 250.0;
-  Columns all(results);
-  const std::vector<double> t = results.read(io::results::kTime);
-  const double begin = t.empty() ? 0.0 : t.front(), end = t.empty() ? 1.0 : t.back();
   std::string content;
   double y = kTop;
-  for (const std::string& name : names) {
-    std::vector<ChannelColumn> columns = all.find(name);
-    if (columns.size() > kColours.size())
-      throw InputError("channel", format("'{}' holds {} curves", name, columns.size()),
+  for (const CurvePanel& curves : panels) {
+    const std::string& name = curves.title;
+    const std::vector<double>& t = curves.t;
+    const double begin = t.empty() ? 0.0 : t.front(), end = t.empty() ? 1.0 : t.back();
+    if (curves.columns.size() > kColours.size())
+      throw InputError("channel", format("'{}' holds {} curves", name, curves.columns.size()),
                        "Name a part of it, at most eight curves go into a panel");
     double low = std::numeric_limits<double>::infinity(), high = -low;
     std::string units;
-    for (const ChannelColumn& c : columns) {
+    for (const ChannelColumn& c : curves.columns) {
       for (double v : c.values)
         if (std::isfinite(v)) {
           low = std::min(low, v);
@@ -228,21 +226,30 @@ std::string channels_svg(const io::ResultsReader& results, const std::vector<std
     io::SvgPanel panel({kLeft, y, kWidth - kLeft - 170.0, kHeight}, begin,
                        end > begin ? end : begin + 1.0, low - room, high + room,
                        format("{} [{}]", name, units));
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      panel.curve(t, columns[i].values, kColours[i]);
+    for (std::size_t i = 0; i < curves.columns.size(); ++i) {
+      panel.curve(t, curves.columns[i].values, kColours[i]);
       const double line = y + 10.0 + 18.0 * static_cast<double>(i);
       content += format(
           "<line x1=\"{0}\" y1=\"{1}\" x2=\"{2}\" y2=\"{1}\" stroke=\"{3}\" stroke-width=\"2\"/>\n",
           kWidth - 160.0, line - 4.0, kWidth - 140.0, kColours[i]);
-      const std::string& full = columns[i].name;
-      const std::string part = full.size() > name.size() ? full.substr(name.size() + 1) : full;
-      content += io::svg_text(kWidth - 134.0, line, part);
+      const std::string& full = curves.columns[i].name;
+      const bool begins = full.starts_with(name + ".");
+      content += io::svg_text(kWidth - 134.0, line, begins ? full.substr(name.size() + 1) : full);
     }
     content += panel.text();
     content += io::svg_text(kLeft + 200.0, y + kHeight + 34.0, time_label);
     y += kStep;
   }
   return io::svg_page(kWidth, y, content);
+}
+
+std::string channels_svg(const io::ResultsReader& results, const std::vector<std::string>& names,
+                         const std::string& time_label) {
+  Columns all(results);
+  const std::vector<double> t = results.read(io::results::kTime);
+  std::vector<CurvePanel> panels;
+  for (const std::string& name : names) panels.push_back({name, t, all.find(name)});
+  return panels_svg(panels, time_label);
 }
 
 }  // namespace polhode

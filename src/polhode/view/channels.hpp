@@ -33,6 +33,19 @@ struct ChannelColumn {
 [[nodiscard]] std::string channels_csv(const io::ResultsReader& results,
                                        const std::vector<std::string>& names);
 
+/// A panel of curves over time.
+struct CurvePanel {
+  std::string title;
+  std::vector<double> t;
+  std::vector<ChannelColumn>
+      columns;  ///< At most eight; names that begin like the title lose that.
+};
+
+/// Diagram of panels below each other. @param time_label  Name of the abscissa.
+/// @throws InputError if a panel has more than eight curves.
+[[nodiscard]] std::string panels_svg(const std::vector<CurvePanel>& panels,
+                                     const std::string& time_label);
+
 /// Diagram of channels over time: a panel for each name, at most eight curves in each.
 /// @param time_label  Name of the abscissa.
 [[nodiscard]] std::string channels_svg(const io::ResultsReader& results,

@@ -57,14 +57,6 @@ std::size_t choose_every(const io::ResultsReader& results, const SceneOptions& o
   return std::max<std::size_t>(1, (frames + most - 1) / most);
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty()) lines.push_back(line);
-  return lines;
-}
-
 std::string model_text(const io::ResultsReader& results) {
   const std::vector<std::string> text =
       results.names(std::string(io::results::kProvenance) + "/model");
@@ -72,6 +64,14 @@ std::string model_text(const io::ResultsReader& results) {
 }
 
 }  // namespace
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
 
 Json json_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
 Json json_of(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }

@@ -33,6 +33,9 @@ class ChunkList {
   std::set<std::size_t>& later_;
 };
 
+/// Lines of a text that are not empty.
+[[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
+
 [[nodiscard]] Json json_of(const Vec3& v);
 [[nodiscard]] Json json_of(const Quat& q);  ///< w, x, y, z.
 

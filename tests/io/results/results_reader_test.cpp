@@ -40,7 +40,7 @@ void write(const std::string& path, int frames) {
   io::ResultsFile file(path, layout,
                        {.version = "1.2.3", .model_text = "format: 1\n", .overrides = {"L=2"}});
   for (int k = 0; k < frames; ++k) file.append(frame(k));
-  file.conclude({"a reason", "and another"});
+  file.conclude({"a reason", "and another"}, {"a warning"});
   file.close();
 }
 

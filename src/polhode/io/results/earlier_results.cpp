@@ -56,8 +56,8 @@ void remove_numbered_files(const std::string& folder, const std::string& extensi
 void clear_earlier_results(const std::string& folder) {
   const fs::path root(folder);
   // A checkpoint of the earlier run would be newer than the frames of this one.
-  for (const char* name :
-       {results::kFileName, "checkpoint.pst", "certificate.svg", "certificate.json", "view.html"})
+  for (const char* name : {results::kFileName, "checkpoint.pst", "certificate.svg",
+                           "certificate.json", "view.html", "report.html"})
     remove_file(root / name);
   for (const fs::path& path : {root / "probes", root / "certificate", root})
     for (const fs::path& file : files_of(path))

@@ -205,7 +205,7 @@ void Recorder::sync() {
 }
 
 void Recorder::conclude(const RunSummary& summary) {
-  if (impl_->results) impl_->results->conclude(summary.distrust);
+  if (impl_->results) impl_->results->conclude(summary.distrust, summary.warnings);
 }
 
 void Recorder::close() {

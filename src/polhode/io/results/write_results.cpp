@@ -10,6 +10,9 @@ namespace polhode::io {
 
 namespace {
 
+/// Longest text of warnings that an attribute takes [bytes]: HDF5 stores up to 64 KiB in one.
+constexpr std::size_t kMostWarnings = 32768;
+
 Hdf5File create(const std::string& path, const ResultsLayout& layout) {
   FilePlan p = plan_results(layout);
   return {path, std::move(p.channels), p.views};
@@ -145,24 +148,28 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.attribute(r::kProvenance, "overrides", lines(provenance.overrides));
   // The verdict is known at the end of the run. Its place is kept here: a part of the header that
   // is added later lies behind all frames, and a file cut short would lose the whole group.
-  conclude_with("", {});
+  conclude_with("", {}, {});
   // A list of one text: attributes are limited to 64 KB, models may be longer.
   file_.names(join(r::kProvenance, "model"), {provenance.model_text});
 }
 
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
   ResultsFile file(Hdf5File::append_to(path, plan_results(layout).channels, t));
-  file.conclude_with("", {});  // The verdict of the run that is continued is none on this one.
+  file.conclude_with("", {}, {});  // The verdict of the run that is continued is none on this one.
   return file;
 }
 
-void ResultsFile::conclude(const std::vector<std::string>& distrust) {
-  conclude_with(distrust.empty() ? "yes" : "no", distrust);
+void ResultsFile::conclude(const std::vector<std::string>& distrust,
+                           const std::vector<std::string>& warnings) {
+  conclude_with(distrust.empty() ? "yes" : "no", distrust, warnings);
 }
 
-void ResultsFile::conclude_with(const char* trusted, const std::vector<std::string>& distrust) {
+void ResultsFile::conclude_with(const char* trusted, const std::vector<std::string>& distrust,
+                                std::vector<std::string> warnings) {
+  while (lines(warnings).size() > kMostWarnings) warnings.pop_back();
   file_.attribute(results::kProvenance, "trusted", trusted);
   file_.attribute(results::kProvenance, "distrust", lines(distrust));
+  file_.attribute(results::kProvenance, "warnings", lines(warnings));
 }
 
 void ResultsFile::append(const ResultsFrame& frame) {

@@ -101,8 +101,9 @@ class ResultsFile {
   static ResultsFile append_to(const std::string& path, const ResultsLayout& layout, double t);
 
   void append(const ResultsFrame& frame);  ///< @throws FileError
-  /// Stores the reasons not to trust the run; none: it is trusted. @throws FileError
-  void conclude(const std::vector<std::string>& distrust);
+  /// Stores the reasons not to trust the run, none if it is trusted, and its warnings, of which the
+  /// last are left out if they are very many. @throws FileError
+  void conclude(const std::vector<std::string>& distrust, const std::vector<std::string>& warnings);
   [[nodiscard]] std::size_t frames() const { return file_.frames(); }
   /// Time of the last frame; nothing if there is none.
   [[nodiscard]] std::optional<double> last_time() const { return file_.last_time(); }
@@ -111,7 +112,8 @@ class ResultsFile {
 
  private:
   explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
-  void conclude_with(const char* trusted, const std::vector<std::string>& distrust);
+  void conclude_with(const char* trusted, const std::vector<std::string>& distrust,
+                     std::vector<std::string> warnings);
 
   Hdf5File file_;
   std::vector<double> numbers_;
