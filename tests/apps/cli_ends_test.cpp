@@ -312,5 +312,41 @@ TEST_F(CommandLine, WarnsWhenEnhancedElementsWereCompressedTooFar) {
   EXPECT_THAT(run({"run", "cube.yaml"}).err, testing::Not(HasSubstr("warning: solids")));
 }
 
+#if !defined(__SANITIZE_ADDRESS__)
+/// A solid under limits of the address space: a message or a result, never an endless search for
+/// memory by the library of matrix products.
+TEST_F(CommandLine, EndsWithASolidWhateverTheLimitOfMemory) {
+  if (test::cli_program().ends_with("_emulated")) GTEST_SKIP() << "an emulator needs more";
+  write("solid.yaml", R"(format: 1
+gravity: [0, 0, -10]
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  block: {mesh: {block: {size: [1, 1, 1], cells: [6, 6, 6]}}, element: hex8, material: rubber, bonded: {ground: zmin}}
+analysis: {type: statics}
+)");
+  bool refused = false, finished = false;
+  for (const int kilobytes : {100000, 150000, 200000, 300000, 2000000}) {
+    SCOPED_TRACE(kilobytes);
+    const test::ProgramResult r =
+        test::Program({"/bin/sh", "-c",
+                       "ulimit -v " + std::to_string(kilobytes) + "; exec timeout -s KILL 60 '" +
+                           test::cli_program() + "' run solid.yaml --quiet -o out"},
+                      folder_ / "")
+            .wait();
+    EXPECT_NE(r.code, -1) << "did not end";
+    EXPECT_NE(r.code, 137) << "did not end";
+    finished = r.code == 0;
+    if (finished) continue;
+    if (r.code == 4) {
+      EXPECT_THAT(r.err, HasSubstr("needs 224 MB of memory at once"));
+      EXPECT_THAT(r.err, HasSubstr("ulimit -v"));
+      refused = true;
+    }
+  }
+  EXPECT_TRUE(finished);
+  EXPECT_TRUE(refused);
+}
+#endif
+
 }  // namespace
 }  // namespace polhode::cli_ends_tests

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <dlfcn.h>
 #include <dmumps_c.h>
+#include <sys/mman.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 
@@ -16,8 +18,42 @@ namespace {
 
 using Entry = void (*)(DMUMPS_STRUC_C*);
 
-/// The library, loaded once.
+/// Address space that OpenBLAS takes when it is loaded, for good, and that of the code [bytes].
+constexpr std::size_t kBlasBuffer = std::size_t{128} << 20, kCode = std::size_t{96} << 20;
+
+/// @throws SolveError if a limit of the process leaves too little for OpenBLAS, which would try for
+/// ever to have its buffer
+void require_address_space() {
+  void* const space = mmap(nullptr, kBlasBuffer + kCode, PROT_READ | PROT_WRITE,
+                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (space == MAP_FAILED)
+    throw SolveError(format("The solver of solids needs {} MB of memory at once, which this "
+                            "process may not have",
+                            (kBlasBuffer + kCode) >> 20),
+                     "Raise its limit, which 'ulimit -v' shows");
+  munmap(space, kBlasBuffer + kCode);
+}
+
+/// A variable of the environment that has a value during this object's life, unless it has one.
+class WhileSet {
+ public:
+  WhileSet(const char* name, const char* value) : name_(getenv(name) ? nullptr : name) {
+    if (name_) setenv(name, value, 0);
+  }
+  ~WhileSet() {
+    if (name_) unsetenv(name_);
+  }
+  WhileSet(const WhileSet&) = delete;
+  WhileSet& operator=(const WhileSet&) = delete;
+
+ private:
+  const char* name_;
+};
+
+/// The library, loaded once. OpenBLAS starts its threads when it is loaded, and none of them works.
 Entry load() {
+  require_address_space();
+  const WhileSet alone("OPENBLAS_NUM_THREADS", "1");
   void* library = dlopen(POLHODE_MUMPS_LIBRARY, RTLD_NOW | RTLD_LOCAL);
   if (!library)
     throw InputError("solids", format("need the MUMPS library: {}", dlerror()),

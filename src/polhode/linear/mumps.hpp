@@ -14,7 +14,8 @@ class Mumps {
  public:
   enum class Symmetry { none, symmetric };
 
-  /// @throws InputError if the library is not installed.
+  /// @throws InputError if the library is not installed; SolveError if a limit of the process
+  /// leaves it too little memory.
   explicit Mumps(Symmetry symmetry = Symmetry::none);
   ~Mumps();
   Mumps(Mumps&&) noexcept;
