@@ -302,7 +302,7 @@ class ExpressionParser : private ExpressionWriter {
     std::vector<std::string> names;
     for (const NamedFunction& f : kExpressionFunctions) names.emplace_back(f.name);
     stop(offset, word.size(), "unknown function " + quote(word),
-         did_you_mean(word, names) + "Functions: " + name_list(names) + ".");
+         did_you_mean(word, names) + "Functions: " + name_list(names, names.size()) + ".");
   }
 
   Part call(const NamedFunction& f, std::size_t offset) {
