@@ -118,7 +118,25 @@ TEST_F(Sdf, ErrorsOfIncludedFilesHaveTheirPlace) {
   EXPECT_THAT(said, HasSubstr("<mass> is 'two', not a number"));
   write("self.sdf", sdf(model("self", link("a") + "<include><uri>self.sdf</uri></include>")));
   EXPECT_THAT(fault("<include><uri>self.sdf</uri></include>"),
-              HasSubstr("files are included more than 20 deep"));
+              HasSubstr("self.sdf' includes itself"));
+  write("twice.sdf",
+        sdf(model("twice", link("a") + "<include><uri>twice.sdf</uri><name>x</name></include>"
+                                       "<include><uri>twice.sdf</uri><name>y</name></include>")));
+  EXPECT_THAT(fault("<include><uri>twice.sdf</uri></include>"),
+              HasSubstr("twice.sdf' includes itself"));
+  // Each includes the next one, or includes it twice.
+  const auto chain = [&](int count, int times) {
+    for (int k = 0; k <= count; ++k) {
+      std::string inside = link("a");
+      for (int i = 0; i < times; ++i)
+        inside += format("<include><uri>c{}.sdf</uri><name>n{}</name></include>", k + 1, i);
+      write(format("c{}.sdf", k), sdf(model("c", k < count ? inside : link("a"))));
+    }
+    return fault("<include><uri>c0.sdf</uri></include>");
+  };
+  EXPECT_EQ(chain(15, 1), "none");
+  EXPECT_THAT(chain(25, 1), HasSubstr("files are included more than 20 deep"));
+  EXPECT_THAT(chain(15, 2), HasSubstr("more than 2000 files are included"));
 }
 
 TEST_F(Sdf, MergedModelsBelongToTheOneAround) {
@@ -200,10 +218,43 @@ TEST_F(Sdf, BrokenFilesAreRefusedWithTheirLine) {
               HasSubstr("the joint 'j' connects 'a' with itself"));
   EXPECT_THAT(fault(link("a") + link("b") + joint("j", "revolute", "a", "b", axis("0 0 0"))),
               HasSubstr("the axis of 'j' has no length"));
+  EXPECT_THAT(fault(link("a", "", "<inertial><pose relative_to='b'>1 0 0 0 0 0</pose></inertial>")),
+              HasSubstr("the pose of the mass of 'a' is relative to 'b', not to its link"));
+  EXPECT_THAT(fault(link("a") + link("b") + link("c") +
+                    joint("u", "universal", "a", "b",
+                          axis("1 0 0", "<dynamics><damping>1</damping></dynamics>") +
+                              axis("0 1 0", "", "axis2")) +
+                    joint("u_axis2", "fixed", "b", "c")),
+              HasSubstr("the name 'u_axis2' is that of another joint too"));
+  write("part.sdf", sdf(model("part", link("a"))));
+  EXPECT_THAT(fault("<include><uri>part.sdf</uri><placement_frame>a</placement_frame></include>"),
+              HasSubstr("<placement_frame> has no <pose> beside it"));
   EXPECT_THAT(fault(link("a", "<kinematic>1</kinematic>")), HasSubstr("the link 'a' is kinematic"));
   EXPECT_THAT(fault(link("a") + "<drake:joint name='x'/>"), HasSubstr("<drake:joint> is not read"));
   EXPECT_THAT(fault(link("a") + "<drake:joint name='x'/>", {"import.allow_partial=true"}),
               HasSubstr("none"));
+}
+
+TEST_F(Sdf, DirectionsHaveAnyLengthAndLinksAnyName) {
+  const auto arm = [&](const std::string& direction, const std::string& turn) {
+    return read(link("a") +
+                link("u_cross", "<pose rotation_format='quat_xyzw'>0 0 0 " + turn + "</pose>") +
+                joint("h", "revolute", "world", "a", axis(direction)) +
+                joint("u", "universal", "a", "u_cross",
+                      axis("1 0 0", "<dynamics><damping>1</damping></dynamics>") +
+                          axis("0 1 0", "", "axis2")));
+  };
+  const Model one = arm("1 1 0", "0 0 1 1"), huge = arm("1e300 1e300 0", "0 0 1e300 1e300"),
+              tiny = arm("1e-300 1e-300 0", "0 0 1e-300 1e-300");
+  for (const Model* other : {&huge, &tiny}) {
+    const State a = Simulation(one).state(), b = Simulation(*other).state();
+    ASSERT_EQ(one.bodies.size(), other->bodies.size());
+    for (std::size_t k = 0; k < one.bodies.size(); ++k)
+      EXPECT_LT((one.bodies[k].position - other->bodies[k].position).norm(), kRounding);
+    EXPECT_EQ(freedoms(one), freedoms(*other));
+    EXPECT_EQ(freedoms(one), 3);
+    EXPECT_EQ(a.blocks.size(), b.blocks.size());
+  }
 }
 
 }  // namespace

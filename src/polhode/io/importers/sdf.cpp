@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <set>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -21,8 +22,8 @@ using Element = XmlFile::Element;
 
 /// Versions of SDFormat that are read: 1.4 to 1.12.
 constexpr int kFirstVersion = 4, kLastVersion = 12;
-/// Files that include each other one in the other.
-constexpr int kMostIncludes = 20;
+/// Files that include each other one in the other, and all that are included.
+constexpr std::size_t kDeepestInclude = 20, kMostIncludes = 2000;
 /// Gravity of a world that gives none [m/s²].
 const Vec3 kWorldGravity(0.0, 0.0, -9.8);
 
@@ -42,7 +43,7 @@ class SdfReader {
     if (file_.options.base != "fixed")
       xml_.fault(root, "an SDFormat file says itself which models move freely",
                  "Leave import.base out.");
-    Place place{0, folder, version_of(root), false, 0};
+    Place place{0, folder, version_of(root), false, {real_path(file_.options.file)}};
     RobotLink world;
     world.name = "world";
     world.at = &root;
@@ -60,8 +61,13 @@ class SdfReader {
     std::string folder;  ///< Of its file.
     int version;         ///< Minor one of its file.
     bool is_static;
-    int depth;  ///< Of includes.
+    std::vector<std::string> open;  ///< Files that include each other up to here, without links.
   };
+
+  static std::string real_path(const std::string& path) {
+    std::error_code unknown;
+    return std::filesystem::weakly_canonical(path, unknown).string();
+  }
 
   int version_of(const Element& root) {
     const std::string text = xml_.required_text(root, "version");
@@ -182,6 +188,8 @@ class SdfReader {
       if (xml_.child(*include, "pose") != nullptr) {
         frame.pose = file_.pose(*include);
         frame.placement = file_.text(*include, "placement_frame");
+      } else if (xml_.child(*include, "placement_frame") != nullptr) {
+        xml_.fault(*include, "<placement_frame> has no <pose> beside it", "Add <pose>.");
       }
       is_static = file_.boolean(*include, "static", is_static);
       merged = merged || file_.flag(*include, "merge", false);
@@ -199,15 +207,26 @@ class SdfReader {
     file_.ignored.skip(e, {"plugin", "namespace"});
     const std::string uri = file_.required_text(e, "uri");
     if (uri.empty()) return;
-    if (place.depth >= kMostIncludes) {
-      xml_.fault(e, format("files are included more than {} deep", kMostIncludes),
-                 "Look for one that includes itself.");
+    if (place.open.size() > kDeepestInclude) {
+      xml_.fault(e, format("files are included more than {} deep", kDeepestInclude),
+                 "Include fewer files one in the other.");
+      return;
+    }
+    if (++includes_ > kMostIncludes) {
+      if (includes_ == kMostIncludes + 1)
+        xml_.fault(e, format("more than {} files are included", kMostIncludes),
+                   "Look for files that include others several times.");
       return;
     }
     const auto path = find_sdf(uri, place.folder, file_.options.package_paths);
     if (!path) {
       file_.refuse(e, format("there is no SDFormat file {} to include", quote(uri)),
                    "Give import.package_paths; nothing is downloaded.");
+      return;
+    }
+    const std::string real = real_path(*path);
+    if (std::find(place.open.begin(), place.open.end(), real) != place.open.end()) {
+      xml_.fault(e, format("the file {} includes itself", quote(*path)), "Remove this include.");
       return;
     }
     const Element* root = xml_.include_below(e, *path, *path);
@@ -220,7 +239,7 @@ class SdfReader {
     Place inside = place;
     inside.folder = std::filesystem::path(*path).parent_path().string();
     inside.version = version_of(*root);
-    ++inside.depth;
+    inside.open.push_back(real);
     read_model(*model, inside, &e, false);
   }
 
@@ -242,11 +261,24 @@ class SdfReader {
       robot_.joints.push_back(std::move(weld));
     }
     read_sdf_joints(file_, frames_, joints_, robot_);
+    refuse_taken_names();
     placed.resize(robot_.links.size());
     file_.ignored.add_unread();
     for (const RobotJoint& joint : robot_.joints)
       if (joint.parent == joint.child) return;  // An error of the tree.
     span_tree(robot_, placed);
+  }
+
+  /// Names that joints are given here may be those of joints of the file.
+  void refuse_taken_names() {
+    std::set<std::string> names;
+    for (const RobotJoint& joint : robot_.joints)
+      if (!names.insert(joint.name).second)
+        xml_.fault(*joint.at,
+                   format("the name {} is that of another joint too, which has it for a second "
+                          "axis or a static link",
+                          quote(joint.name)),
+                   "Rename the joint.");
   }
 
   XmlFile& xml_;
@@ -255,6 +287,7 @@ class SdfReader {
   Robot robot_;
   std::vector<SdfLink> links_;
   std::vector<SdfJoint> joints_;
+  std::size_t includes_ = 0;
 };
 
 }  // namespace

@@ -112,8 +112,10 @@ SdfPose SdfFile::pose(const Element& parent) {
   const std::vector<double>& v = *values;
   result.pose.p = Vec3(v[0], v[1], v[2]);
   if (quaternion) {
-    const Quat turn(v[6], v[3], v[4], v[5]);
-    if (turn.norm() > 0.0)
+    Quat turn(v[6], v[3], v[4], v[5]);
+    const double largest = turn.coeffs().cwiseAbs().maxCoeff();
+    if (largest > 0.0) turn.coeffs() /= largest;  // Squares of any numbers are finite then.
+    if (largest > 0.0)
       result.pose.R = turn.normalized().toRotationMatrix();
     else
       xml.fault(*e, "the quaternion of <pose> is zero", "Write 0 0 0 1 for no rotation.");

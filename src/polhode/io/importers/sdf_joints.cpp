@@ -119,7 +119,9 @@ class SdfJointReader {
 
   /// Direction of an axis in the joint's frame.
   Vec3 direction(const SdfJoint& j, const Element& axis, const std::string& joint) {
-    const Vec3 given = file_.vector(axis, "xyz").value_or(Vec3::UnitZ());
+    Vec3 given = file_.vector(axis, "xyz").value_or(Vec3::UnitZ());
+    if (const double largest = given.cwiseAbs().maxCoeff(); largest > 0.0)
+      given /= largest;  // Squares of any numbers are finite then.
     const Element* xyz = xml_.child(axis, "xyz");
     // Before version 1.5 axes were along those of the model.
     const bool of_model = file_.boolean(axis, "use_parent_model_frame", j.version < 5);
@@ -132,7 +134,8 @@ class SdfJointReader {
     }
     if (in.empty()) return given.normalized();
     const int base = frames_.required(axis, frames_[j.frame].scope, in);
-    return base < 0 ? given : (frames_.between(j.frame, base).R * given).normalized();
+    return base < 0 ? Vec3(given.normalized())
+                    : Vec3((frames_.between(j.frame, base).R * given).normalized());
   }
 
   void read_axis(const SdfJoint& j, const char* tag, RobotJoint& joint) {
@@ -255,6 +258,11 @@ class SdfJointReader {
     }
     RobotLink cross;
     cross.name = whole.name + "_cross";
+    const auto taken = [&] {
+      return std::any_of(robot_.links.begin(), robot_.links.end(),
+                         [&](const RobotLink& link) { return link.name == cross.name; });
+    };
+    while (taken()) cross.name += "_";
     cross.at = j.at;
     cross.name_in_file = false;
     first.child = second.parent = cross.name;

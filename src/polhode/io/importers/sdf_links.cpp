@@ -67,7 +67,13 @@ class SdfLinkReader {
       return;
     }
     file_.ignored.skip(*e, {"density", "auto_inertia_params"});
-    const Pose pose = file_.pose(*e).pose;
+    const SdfPose given = file_.pose(*e);
+    if (!given.relative_to.empty())
+      xml_.fault(*e,
+                 format("the pose of the mass of {} is relative to {}, not to its link",
+                        quote(link_.name), quote(given.relative_to)),
+                 "Leave relative_to out, and give the pose in the link's frame.");
+    const Pose& pose = given.pose;
     link_.mass.com = pose.p;
     link_.mass.mass = file_.number(*e, "mass").value_or(1.0);
     if (link_.mass.mass < 0.0)
@@ -195,8 +201,8 @@ class SdfLinkReader {
       shape.kind = "plane";
       const Vec3 normal = file_.vector(*plane, "normal").value_or(Vec3::UnitZ());
       static_cast<void>(xml_.child(*plane, "size"));  // Of the picture.
-      if (normal.norm() > 0.0)
-        shape.pose.R = shape.pose.R * axes_along(normal.normalized());
+      if (const double largest = normal.cwiseAbs().maxCoeff(); largest > 0.0)
+        shape.pose.R = shape.pose.R * axes_along((normal / largest).normalized());
       else
         xml_.fault(*plane, "the normal of <plane> has no length", "Write 0 0 1, for example.");
       return true;
