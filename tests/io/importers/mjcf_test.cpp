@@ -179,7 +179,8 @@ TEST_F(Mjcf, CoordinatesCountFromTheirReference) {
   const Vec3 expected =
       Vec3(1.5, 0, 0) + Eigen::AngleAxisd(kPi / 6.0, Vec3::UnitY()) * Vec3(-0.5, 0, 0);
   EXPECT_NEAR((turned.bodies.at(1).position - expected).norm(), 0.0, kRounding);
-  EXPECT_NEAR(turned.joints.at(0).angle_limits->upper.value_or(0.0), kPi / 3.0, kRounding);
+  ASSERT_TRUE(turned.joints.at(0).limits.has_value());
+  EXPECT_NEAR(turned.joints.at(0).limits->upper.value_or(0.0), kPi / 3.0, kRounding);
 }
 
 // A weight on two parallel rods, closed by <connect>: one freedom; and two rollers by <joint>.
