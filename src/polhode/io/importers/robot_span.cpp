@@ -13,7 +13,7 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// The same joint from its child to its parent, with the same coordinate.
+/// Exchanges parent and child of a joint, whose coordinate remains.
 void reverse(RobotJoint& joint) {
   std::swap(joint.parent, joint.child);
   std::swap(joint.origin, joint.on_child);

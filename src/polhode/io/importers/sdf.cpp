@@ -55,7 +55,7 @@ class SdfReader {
   }
 
  private:
-  /// Where a tag stands.
+  /// Surroundings of a tag: its model, its file and the files that include that.
   struct Place {
     int scope;
     std::string folder;  ///< Of its file.
@@ -116,7 +116,7 @@ class SdfReader {
     }
   }
 
-  /// What models and worlds have in common.
+  /// Reads links, joints, frames, models and includes, of a model or a world.
   void read_content(const Element& e, const Place& place) {
     for (const Element* link : xml_.children(e, "link")) name_link(*link, place);
     for (const Element* joint : xml_.children(e, "joint")) name_joint(*joint, place);

@@ -11,7 +11,7 @@ namespace polhode::io {
 
 namespace {
 
-/// From this size on a limit stands for none, as SDFormat's standard value does.
+/// Size from which on a limit means none, as SDFormat's standard value does.
 constexpr double kNoLimit = 1e16;
 
 }  // namespace

@@ -41,7 +41,7 @@ class SdfFile {
   std::string required_text(const Element& parent, const char* tag);
   /// Number of a child; nothing if there is none, or after an error.
   std::optional<double> number(const Element& parent, const char* tag);
-  /// Likewise, and nothing where it stands for infinity.
+  /// Number of a child; nothing if there is none or it means infinity, or after an error.
   std::optional<double> bound(const Element& parent, const char* tag);
   /// Number of a child that is not negative; 0 if there is none.
   double not_negative(const Element& parent, const char* tag);

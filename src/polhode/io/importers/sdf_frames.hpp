@@ -38,12 +38,12 @@ class SdfFrames {
   void connect();
 
   [[nodiscard]] const SdfFrame& operator[](int frame) const { return frames_[index(frame)]; }
-  /// What stands before the names of a scope, outside of it.
+  /// Prefix of the names of a scope, by which they are known outside of it.
   [[nodiscard]] const std::string& prefix(int scope) const { return scopes_[index(scope)].prefix; }
   [[nodiscard]] int model_frame(int scope) const { return scopes_[index(scope)].frame; }
   /// Frame of a name, which may be scoped; −1 if there is none.
   [[nodiscard]] int find(int scope, const std::string& name) const;
-  /// Likewise, −1 after an error.
+  /// Frame of a name, which must exist; −1 after an error.
   int required(const XmlFile::Element& at, int scope, const std::string& name);
   /// Frame of the link that a frame is attached to; −1 after an error.
   int link_of(const XmlFile::Element& at, int frame);

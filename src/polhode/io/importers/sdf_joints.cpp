@@ -18,7 +18,8 @@ using Element = XmlFile::Element;
 /// Rounding of the scalar product of two unit vectors, below which they are perpendicular, or of
 /// their cross product, below which they are parallel.
 constexpr double kSameDirection = 1e-12;
-/// Likewise of axes of different joints, which a file gives with few digits.
+/// Cross product of unit axes of different joints below which they are parallel: a file gives them
+/// with few digits.
 constexpr double kParallel = 1e-6;
 
 class SdfJointReader {

@@ -8,7 +8,7 @@
 
 namespace polhode::io {
 
-/// A joint of an SDFormat file, and where it stands.
+/// A joint of an SDFormat file, with its frame and version.
 struct SdfJoint {
   const XmlFile::Element* at = nullptr;
   int frame = 0;

@@ -200,7 +200,7 @@ class SdfLinkReader {
     } else if (const Element* plane = xml_.child(e, "plane")) {
       shape.kind = "plane";
       const Vec3 normal = file_.vector(*plane, "normal").value_or(Vec3::UnitZ());
-      static_cast<void>(xml_.child(*plane, "size"));  // Of the picture.
+      static_cast<void>(xml_.child(*plane, "size"));  // Drawn size only.
       if (const double largest = normal.cwiseAbs().maxCoeff(); largest > 0.0)
         shape.pose.R = shape.pose.R * axes_along((normal / largest).normalized());
       else

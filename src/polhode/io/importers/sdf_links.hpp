@@ -8,7 +8,7 @@
 
 namespace polhode::io {
 
-/// A link of an SDFormat file, and where it stands.
+/// A link of an SDFormat file, with its frame and folder.
 struct SdfLink {
   const XmlFile::Element* at = nullptr;
   int frame = 0;
