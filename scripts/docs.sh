@@ -75,6 +75,7 @@ rm -f build/docs/whole
 PYTHONDONTWRITEBYTECODE=1 "$python" -m sphinx -q -W --keep-going -j auto -c docs/site -d build/docs/doctrees -b html build/docs/source build/docs/html
 touch build/docs/whole
 [ ! -d build/docs/source/extra ] || cp -r build/docs/source/extra/. build/docs/html/
+"$python" docs/site/search_text.py build/docs/html
 "$python" docs/site/theory_pdf.py build/docs/html build/docs/html/theory.pdf "${version:-$(sed -n 's/.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -1)}" || [ $? -eq 77 ]
 "$python" docs/site/check_site.py build/docs/html
 place=build/docs/html

@@ -27,14 +27,13 @@ suppress_warnings = ["myst.header"]
 html_theme = "furo"
 html_title = f"Polhode {version}"
 html_static_path = ["static"]
+templates_path = ["templates"]
 exclude_patterns = ["extra", "static"]
 html_css_files = ["site.css"]
 # Other versions lie beside this one: scripts/docs.sh --version.
 html_js_files = ["versions_menu.js"] if os.environ.get("POLHODE_DOCS_VERSION") else []
 html_math_renderer = "mathml"
 html_copy_source = False
-# The summaries of a search would be fetched, which browsers refuse to pages from a disk.
-html_show_search_summary = False
 html_show_sphinx = False
 html_permalinks_icon = "#"
 html_theme_options = {

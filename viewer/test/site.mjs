@@ -26,7 +26,7 @@ async function open(path, options, look) {
   await context.close();
 }
 const phone = { viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true };
-for (const path of ["index.html", "gallery.html", "theory/joints.html", "reference/conventions.html", "quick_start/robot.html", "api/python.html"])
+for (const path of ["index.html", "gallery.html", "theory/joints.html", "reference/conventions.html", "quick_start/robot.html", "api/python.html", "search.html?q=joint"])
   for (const options of [{}, { colorScheme: "dark" }, phone])
     await open(path, options, async (page) => {
       await page.evaluate(axe);
@@ -49,13 +49,29 @@ for (const path of [...["mechanism", "spacecraft", "tissue", "robot", "classroom
 const terms = readFileSync(join(site, "how_to/coming_from_another_program.html"), "utf8");
 for (const program of ["FEBio", "Chrono", "MuJoCo", "Adams", "Exudyn"]) expect(terms.includes(program), `terms of ${program} are missing`);
 expect(readFileSync(join(site, "theory.pdf")).subarray(0, 5).toString() === "%PDF-", "the theory is no PDF");
-for (const [words, at] of [["bushing", "reference/connectors.html"], ["quaternion order", "reference/conventions.html"]])
+// The search: the page that is meant comes first, with excerpts that show the words and links to their sections.
+for (const [words, at, place] of [["joint friction", "reference/joints.html", "friction-and-limits"], ["bushing", "reference/connectors.html", "bushings"], ["step does not converge", "how_to/step_does_not_converge.html"],
+  ["rotary_motor", "reference/model_file.html", "load-rotary-motor"], ["muscle", "reference/beams.html", "muscles"], ["units", "reference/conventions.html", "units"], ["planetary gears", "examples/planetary_gearbox/index.html"]])
   await open(`search.html?q=${encodeURIComponent(words)}`, {}, async (page) => {
     await page.locator("#search-results li a").first().waitFor();
-    await page.waitForTimeout(300);
-    const links = await page.locator("#search-results li a").evaluateAll((all) => all.map((a) => a.getAttribute("href").split("?")[0].split("#")[0]));
-    expect(links.includes(at), `a search for '${words}' does not find ${at}: ${links.slice(0, 5)}`);
+    const first = page.locator("#search-results > li").first(), links = await first.locator("a").evaluateAll((all) => all.map((a) => a.getAttribute("href")));
+    expect(links[0] === at && (!place || links.includes(`${at}#${place}`)), `a search for '${words}' finds ${links} first, not ${at}`);
+    const text = await first.innerText(), marked = (await first.locator("mark").allTextContents()).map((word) => word.toLowerCase());
+    const shown = [...marked, ...(await first.locator("a").allTextContents()).join(" ").toLowerCase().split(" ")];
+    expect(marked.length > 0 && words.split(" ").every((word) => shown.some((mark) => mark.startsWith(word.slice(0, 6)))), `the excerpts for '${words}' mark ${marked}`);
+    expect(text.length > 120 && text.length < 1200, `the excerpts for '${words}' have ${text.length} letters`);
   });
+await open("search.html?q=quaternion%20order", {}, async (page) => {
+  await page.locator("#search-results li a").first().waitFor();
+  const links = async () => (await page.locator("#search-results > li > a").evaluateAll((all) => all.map((a) => a.getAttribute("href"))));
+  expect((await links()).includes("reference/conventions.html"), "a search for 'quaternion order' does not find the conventions");
+  const before = (await links()).length;
+  await page.locator("#search-status button").click();
+  expect((await links()).length > before, "the other pages are not shown");
+  await page.locator('input[name="q"]').first().fill("zzzq");
+  await page.waitForFunction(() => document.querySelectorAll("#search-results > li").length === 0);
+  expect((await page.locator("#search-status").innerText()).includes("No page holds “zzzq”"), "a search without results does not say so");
+});
 if (existsSync(join(site, "live")))
   await open("examples/heavy_top/index.html", {}, async (page) => {
     await page.locator("iframe.live").scrollIntoViewIfNeeded();
