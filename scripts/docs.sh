@@ -69,14 +69,15 @@ for browser in "${CHROMIUM:-}" chromium chromium-browser google-chrome; do
   [ -n "$browser" ] && command -v "$browser" >/dev/null && { options+=(--pdf); break; }
 done
 PYTHONDONTWRITEBYTECODE=1 "$python" docs/site/assemble.py build/docs/source "${options[@]}"
-# A build that was interrupted leaves a part of the index of words, and the next one would add only what has changed.
-[ -e build/docs/whole ] || rm -rf build/docs/doctrees
+# A build that was interrupted leaves a part of the index of words, and the next one would add only what has changed; nor does
+# it know what has changed in the tools of the site.
+[ -e build/docs/whole ] && [ -z "$(find docs/site -newer build/docs/whole)" ] || rm -rf build/docs/doctrees
 rm -f build/docs/whole
 PYTHONDONTWRITEBYTECODE=1 "$python" -m sphinx -q -W --keep-going -j auto -c docs/site -d build/docs/doctrees -b html build/docs/source build/docs/html
 touch build/docs/whole
 [ ! -d build/docs/source/extra ] || cp -r build/docs/source/extra/. build/docs/html/
 "$python" docs/site/search_text.py build/docs/html
-"$python" docs/site/theory_pdf.py build/docs/html build/docs/html/theory.pdf "${version:-$(sed -n 's/.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -1)}" || [ $? -eq 77 ]
+"$python" docs/site/theory_pdf.py build/docs/html build/docs/html/theory.pdf || [ $? -eq 77 ]
 "$python" docs/site/check_site.py build/docs/html
 place=build/docs/html
 if [ -n "$version" ]; then

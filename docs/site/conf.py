@@ -12,7 +12,7 @@ _ROOT = pathlib.Path(__file__).resolve().parents[2]
 project = "Polhode"
 author = "the Polhode authors"
 project_copyright = author
-version = release = os.environ.get("POLHODE_DOCS_VERSION") or re.search(r"VERSION (\d+\.\d+\.\d+)", (_ROOT / "CMakeLists.txt").read_text())[1]
+version = release = os.environ.get("POLHODE_DOCS_VERSION") or re.search(r"project\(polhode VERSION (\d+\.\d+\.\d+)", (_ROOT / "CMakeLists.txt").read_text())[1]
 language = "en"
 
 extensions = ["myst_parser", "mathml"]

@@ -8,13 +8,24 @@ import latex2mathml.converter
 
 # What the converter does not know, in words that it does.
 _PLAIN = [
-    (re.compile(r"\\(?:Big|big)[lrm]?\s*\\([{}])"), r"\\\1"),
-    (re.compile(r"\\(?:Big|big)[lrm]?\s*([\[\]()|/.])"), r"\1"),
+    (re.compile(r"\\(begin|end)\{aligned\}"), r"\\\1{align*}"),
     (re.compile(r"\\arg\\(min|max)"), r"\\operatorname{arg\\,\1}"),
     (re.compile(r"\\texttt\{([^{}]*)\}"), lambda m: r"\mathtt{" + m[1].replace(r"\_", "_").replace("_", "\uff3f") + "}"),
     (re.compile(r"(?<!\\)\\ "), r"\\;"),
     (re.compile(r"\\label\{[^{}]*\}"), ""),
 ]
+
+
+_SIZED = re.compile(r'<mo ([^>]*minsize="[^"]*"[^>]*)>\\?([^<]+)</mo>')
+
+
+def _grown(match):
+    """A bracket of a given size: browsers stretch it only as a fence whose side they are told. \\Big ones stand around sums and
+    fractions and cover them."""
+    attributes = re.sub(r'\s*(?:stretchy|fence)="[^"]*"', "", match[1]).strip()
+    attributes = attributes.replace(' maxsize="1.623em"', "")
+    form = {"(": "prefix", "[": "prefix", "{": "prefix", ")": "postfix", "]": "postfix", "}": "postfix"}.get(html.unescape(match[2]))
+    return f'<mo stretchy="true" fence="true" {f"""form="{form}" """ if form else ""}{attributes}>{match[2]}</mo>'
 
 
 def convert(latex, display=False):
@@ -25,6 +36,7 @@ def convert(latex, display=False):
         text = latex2mathml.converter.convert(latex.strip(), display="block" if display else "inline")
     except Exception as error:
         raise ValueError(f"{type(error).__name__} {error}") from error
+    text = _SIZED.sub(_grown, text)
     if left := re.search(r"\\[A-Za-z]+", html.unescape(text)):
         raise ValueError(f"'{left[0]}' is not understood")
     return text.replace("\uff3f", "_")

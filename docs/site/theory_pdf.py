@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pages of the theory, out of the built site, as one PDF with contents, links and an outline.
 
-    theory_pdf.py FOLDER OUT.pdf    FOLDER holds the built site; a Chromium without window prints it ($CHROMIUM, else the one
-                                    that is installed). Ends with 77 where there is none.
+    theory_pdf.py FOLDER OUT.pdf    FOLDER holds the built site, with the version and the order of the chapters in its menu; a
+                                    Chromium without window prints it ($CHROMIUM, else the one that is installed). Ends with
+                                    77 where there is none.
 """
 
+import html
 import html.parser
 import os
 import pathlib
@@ -15,7 +17,6 @@ import sys
 import tempfile
 import unicodedata
 
-FIRST, LAST = ["rigid_body_dynamics"], ["symbols", "index"]
 STYLE = """
 @page { size: A4; margin: 20mm 18mm; }
 body { font: 10.5pt/1.45 serif; color: #000; }
@@ -90,11 +91,21 @@ class Article(html.parser.HTMLParser):
         self.add(f"&#{name};")
 
 
-def book(site, version):
-    """The whole as one page of HTML, and the titles of its chapters."""
+def version_and_chapters(site):
+    """What the first page of the site says: its version, and the pages of the theory in the order of the menu."""
+    text = (site / "index.html").read_text()
+    version = re.search(r"<title>Polhode ([^<]*)</title>", text)[1].removesuffix(" documentation")
+    names = list(dict.fromkeys(re.findall(r'class="[^"]*reference internal"[^>]* href="theory/(\w+)\.html"', text)))
+    lost = {p.stem for p in (site / "theory").glob("*.html")} ^ set(names)
+    if lost:
+        sys.exit(f"theory_pdf: {sorted(lost)} are not both in the menu and in the folder of the theory")
+    return version, names
+
+
+def book(site):
+    """The whole as one page of HTML, its version, and the titles of its chapters."""
     folder = site / "theory"
-    names = sorted(p.stem for p in folder.glob("*.html"))
-    names = [n for n in FIRST if n in names] + [n for n in names if n not in FIRST + LAST] + [n for n in LAST if n in names]
+    version, names = version_and_chapters(site)
     chapters = []
     for name in names:
         article = Article(name, folder, names)
@@ -103,39 +114,50 @@ def book(site, version):
     contents = "".join(f'<li><a href="#page-{n}">{t}</a></li>' for n, t, _ in chapters)
     pages = "".join(f'<section class="page" id="page-{n}">{text}</section>' for n, _, text in chapters)
     style = STYLE + "".join(line + "\n" for line in (site / "_static/site.css").read_text().splitlines() if line.startswith((".formula", "math")))
-    style += ".formula { overflow: visible; flex-wrap: wrap; justify-content: center; } .formula .label { font-size: 7pt; margin-left: auto; } math { font-size: 0.95em; }"
+    style += ".formula { overflow: visible; justify-content: center; } .formula .label { font-size: 7pt; } math { font-size: 0.95em; }"
     return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Polhode {version}: theory</title><style>{style}</style></head>'
-            f"<body><h1>Polhode {version}: theory</h1><p>Every equation has a label; the last chapter lists them with their code and their tests.</p><ol>{contents}</ol>{pages}</body></html>"), [t for _, t, _ in chapters]
+            f"<body><h1>Polhode {version}: theory</h1><p>Every equation has a label; the last chapter lists them with their code and their tests.</p><ol>{contents}</ol>{pages}</body></html>"), version, [t for _, t, _ in chapters]
 
 
-def check(file, titles):
-    """The PDF has every chapter, in its outline and in its text, and formulas are no commands."""
+def plain(text):
+    """The text of a title, without tags, with single blanks and without ligatures."""
+    return re.sub(r"\s+", " ", unicodedata.normalize("NFKC", html.unescape(re.sub(r"<[^>]*>", "", text)))).strip()
+
+
+def check(file, version, titles):
+    """The PDF has its version on the first page, the chapters in their order in the outline, and no commands in place of formulas."""
     import pypdf
 
     reader = pypdf.PdfReader(file)
-    text = re.sub(r"\s+", " ", unicodedata.normalize("NFKC", " ".join(page.extract_text() for page in reader.pages)))  # ligatures apart
-    missing = [t for t in titles if re.sub(r"<[^>]*>|\s+", " ", t).strip() not in text]
-    outline = len(list(reader.outline))
-    if missing or outline == 0 or len(reader.pages) < 3 * len(titles) or "\\frac" in text:
-        sys.exit(f"theory_pdf: {file} lacks {missing}; {len(reader.pages)} pages, {outline} entries in the outline")
-    print(f"{file}: {len(titles)} chapters, {len(reader.pages)} pages, {file.stat().st_size / 1e6:.1f} MB")
+    text = plain(" ".join(page.extract_text().replace("<", "&lt;") for page in reader.pages))
+    outline = [plain(entry.title).replace(" ", "") for entry in reader.outline if not isinstance(entry, list)]  # it breaks long titles without a blank
+    wanted = [plain(title).replace(" ", "") for title in (f"Polhode {version}: theory", *titles)]
+    faults = [f"the outline is {outline}, not {wanted}"] if outline != wanted else []
+    faults += [f"the text lacks '{title}'" for title in (plain(t) for t in titles) if title not in text]
+    if not plain(reader.pages[0].extract_text()).startswith(f"Polhode {version}: theory"):
+        faults.append(f"the first page does not begin with 'Polhode {version}: theory'")
+    if len(reader.pages) < 3 * len(titles) or re.search(r"\\frac|\\begin|[^ ] ?& ?=", text):
+        faults.append(f"there are {len(reader.pages)} pages, or formulas are not set")
+    if faults:
+        sys.exit(f"theory_pdf: {file}: " + "; ".join(faults))
+    print(f"{file}: Polhode {version}, {len(titles)} chapters, {len(reader.pages)} pages, {file.stat().st_size / 1e6:.1f} MB")
 
 
-def main(site, out, version):
+def main(site, out):
     wanted = [os.environ.get("CHROMIUM"), "chromium", "chromium-browser", "google-chrome"]
     browser = next((found for name in wanted if name and (found := shutil.which(name))), None)
     if browser is None:
         print("There is no Chromium: no PDF of the theory.")
         return 77
-    text, titles = book(site, version)
+    text, version, titles = book(site)
     with tempfile.TemporaryDirectory() as folder:
         page = pathlib.Path(folder) / "theory.html"
         page.write_text(text)
         subprocess.run([browser, "--headless=new", *(["--no-sandbox"] if os.geteuid() == 0 else []), "--disable-gpu", f"--user-data-dir={folder}/profile", "--no-pdf-header-footer",
                         "--generate-pdf-document-outline", f"--print-to-pdf={out}", page.as_uri()], check=True, capture_output=True, timeout=900)
-    check(out, titles)
+    check(out, version, titles)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3] if len(sys.argv) > 3 else ""))
+    sys.exit(main(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()))

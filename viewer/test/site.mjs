@@ -37,6 +37,32 @@ for (const path of ["index.html", "gallery.html", "theory/joints.html", "referen
       expect(await page.evaluate(() => [...document.images].every((i) => !i.complete || i.naturalWidth > 0 || i.loading === "lazy")), `${path}: a picture is missing`);
     });
 await open("theory/joints.html", {}, async (page) => expect(await page.locator("math").count() > 20 && await page.locator("#equation-joint-coincident math").count() === 1, "formulas are no formulas"));
+// Rows of a formula stand under each other at their signs of equality, and brackets are as tall as what they hold.
+for (const [path, id, count] of [["theory/rigid_body_dynamics.html", "equation-eq-td-newmark-com", 2], ["theory/rigid_body_dynamics.html", "equation-eq-td-newmark-mrot", 3]])
+  await open(path, {}, async (page) => {
+    const { rows, outside, label } = await page.evaluate((id) => {
+      const formula = document.getElementById(id), table = formula.querySelector("mtable"), box = (e) => e.getBoundingClientRect();
+      return { label: box(formula.querySelector(".label")).right, outside: formula.scrollWidth - formula.clientWidth,
+        rows: [...(table?.querySelectorAll(":scope > mtr") ?? [])].map((row) => {
+          const left = row.children[0].lastElementChild;
+          return { y: box(row).y, height: box(row).height, sign: box([...row.querySelectorAll("mo")].find((mo) => mo.textContent === "=")).x, left: left && box(left).right };
+        }) };
+    }, id);
+    expect(rows.length === count && rows.every((row, i) => i === 0 || (row.y >= rows[i - 1].y + rows[i - 1].height - 1 && Math.abs(row.sign - rows[0].sign) < 1)), `${id} has rows at ${JSON.stringify(rows)}`);
+    expect(rows.every((row) => row.left === null || Math.abs(row.left - rows[0].left) < 1), `the left sides of ${id} do not end at the signs of equality: ${JSON.stringify(rows)}`);
+    expect(outside <= 0 && label < 1200, `${id} is wider than its page`);
+  });
+for (const path of ["theory/rigid_body_dynamics.html", "theory/surface_contact.html", "theory/loads.html"])
+  await open(path, {}, async (page) => {
+    const low = await page.evaluate(() => [...document.querySelectorAll("article math mo[stretchy=true]")].filter((mo) => !mo.hasAttribute("maxsize") && mo.textContent.trim()).map((mo) => {
+      // What stands beside it, up to the bracket that belongs to it: all of its row at most.
+      const all = [...mo.parentElement.children].filter((e) => e.localName === "mfrac" || e.localName === "munder" || e.localName === "mtable"), height = Math.max(0, ...all.map((e) => e.getBoundingClientRect().height));
+      return { text: mo.textContent, height: mo.getBoundingClientRect().height, held: height };
+    }).filter(({ height, held }) => height < 0.8 * held));
+    const count = await page.locator("article math mo[stretchy=true]").count();
+    expect(count > 10 && low.length === 0, `${path}: of ${count} brackets these are too low: ${JSON.stringify(low.slice(0, 4))}`);
+    expect(await page.locator("article math").evaluateAll((all) => all.every((m) => !m.textContent.includes("&"))), `${path}: a formula has a sign of columns`);
+  });
 // Contents of the site: five quick starts, every example with its picture, help, terms of other programs, interfaces, the theory as one file.
 const examples = join(dirname(fileURLToPath(import.meta.url)), "../../examples"), all = readdirSync(examples).filter((name) => existsSync(join(examples, name, "model.yaml")));
 await open("gallery.html", {}, async (page) => {
