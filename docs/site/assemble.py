@@ -19,6 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cpp_pages  # noqa: E402
 import python_pages  # noqa: E402
 import source_pages  # noqa: E402
+import tables  # noqa: E402
 from docutils import nodes  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -29,7 +30,7 @@ LINK = re.compile(r"(!?\[(?:[^\[\]]|\[[^\[\]]*\])*\])\(<?([^)>\s]+)>?((?:\s+\"[^
 PATH = re.compile(r"`((?:src|apps|tests|tools|scripts|cmake|benchmarks|examples|python|viewer)/[\w./-]+\.(?:hpp|cpp|py|ts|mjs|sh|yaml|txt|cmake))(?::(\d+))?`")
 LABELLED = re.compile(r"\$\$(.+?)\$\$", re.S)
 LABEL = re.compile(r"\s*\\label\{([\w:-]+)\}")
-INDEX_CODE = re.compile(r"\((src|tests)/([\w./-]+)\)")
+INDEX_CODE = re.compile(r"`(?P<name>[^`]+)` \((?P<path>(?:src|tests)/[\w./-]+)\)|(?<=[ >])(?P<alone>(?:src|tests)/[\w./-]+)(?=<br>|\s)")
 
 PDF = '\n<a href="../theory.pdf">All pages of the theory in one PDF.</a>\n'
 
@@ -61,11 +62,26 @@ class Site:
         path.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / place, path)
 
-    def source_link(self, page, path, shown, anchor=""):
+    def source_link(self, page, path, shown, anchor="", title=""):
         """HTML link from a page of the site to the page of a source file."""
         self.cited.setdefault(path, set())
         up = posixpath.relpath(f"code/{path}.html", posixpath.dirname(page) or ".")
-        return f'<a class="code" href="{up}{anchor}">{shown}</a>'
+        told = f' title="{title}"' if title else ""
+        return f'<a class="code" href="{up}{anchor}"{told}>{shown}</a>'
+
+    def row(self, line, page):
+        """A row of a table: what it means has the room. Source files are links with short names, or alone in their cell with none."""
+        def source(match, shown):
+            path, number = match.groups()
+            return self.source_link(page, path, shown, f"#L{number}" if number else "", path) if (ROOT / path).is_file() else match[0]
+
+        cells = re.split(r"(?<!\\)\|", line)
+        for at, cell in enumerate(cells):
+            if alone := PATH.fullmatch(cell.strip()):
+                cells[at] = f" {source(alone, 'code')} "
+            else:
+                cells[at] = PATH.sub(lambda m: source(m, f"<code>{tables.breakable(posixpath.basename(m[1]))}</code>"), cell)
+        return "|".join(cells)
 
     def link(self, match, place, page):
         text, target, title = match.groups()
@@ -98,6 +114,8 @@ class Site:
                 fence = None
             elif fence is None:
                 line = LINK.sub(lambda m: self.link(m, place, page), line)
+                if line.startswith("|"):
+                    line = self.row(line, page)
                 line = PATH.sub(lambda m: self.source_link(page, m[1], f"<code>{m[1]}</code>", f"#L{m[2]}" if m[2] else "")
                                 if (ROOT / m[1]).is_file() else m[0], line)
             lines.append(line)
@@ -115,21 +133,21 @@ class Site:
         return page
 
     def index_of_equations(self, text):
+        """The index with links in place of paths: a function or test by its name, a file by its own."""
         def code(match, label):
-            path = f"{match[1]}/{match[2]}"
+            name, path = match["name"], match["path"] or match["alone"]
             if not (ROOT / path).is_file():
                 return match[0]
-            link = self.source_link("theory/index.md", path, path, f"#{label}")
+            link = self.source_link("theory/index.md", path, f"<code>{tables.breakable(name or posixpath.basename(path))}</code>", f"#{label}", path)
             self.cited[path].add(label)
-            return f"({link})"
+            return link
 
         lines = []
         for line in text.split("\n"):
             if row := re.match(r"\| \[([\w:-]+)\]\((\w+)\.md\)", line):
                 label = row[1]
-                line = line.replace(row[0], f'| <a href="{row[2]}.html#{nodes.make_id("equation-" + label)}">{label}</a>')
-                line = INDEX_CODE.sub(lambda m: code(m, label), line)
-                line = re.sub(r"(<br>|\| )((?:src|tests)/[\w./-]+)(?=<br>| \|)", lambda m: f"{m[1]}{self.source_link('theory/index.md', m[2], m[2])}", line)
+                rest = INDEX_CODE.sub(lambda m: code(m, label), line[row.end():])
+                line = f'| <a href="{row[2]}.html#{nodes.make_id("equation-" + label)}">{label}</a>{rest}'
             lines.append(line)
         return "\n".join(lines)
 

@@ -15,7 +15,7 @@ project_copyright = author
 version = release = os.environ.get("POLHODE_DOCS_VERSION") or re.search(r"project\(polhode VERSION (\d+\.\d+\.\d+)", (_ROOT / "CMakeLists.txt").read_text())[1]
 language = "en"
 
-extensions = ["myst_parser", "mathml"]
+extensions = ["myst_parser", "mathml", "tables"]
 source_suffix = {".md": "markdown"}
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_dmath_double_inline = True

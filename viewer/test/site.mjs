@@ -63,6 +63,21 @@ for (const path of ["theory/rigid_body_dynamics.html", "theory/surface_contact.h
     expect(count > 10 && low.length === 0, `${path}: of ${count} brackets these are too low: ${JSON.stringify(low.slice(0, 4))}`);
     expect(await page.locator("article math").evaluateAll((all) => all.every((m) => !m.textContent.includes("&"))), `${path}: a formula has a sign of columns`);
   });
+// Tables give the room to what they mean: source files are short links, with their paths as titles.
+for (const [path, column] of [["reference/joints.html", "meaning"], ["reference/numerics.html", "reason"], ["theory/index.html", "code"]])
+  await open(path, {}, async (page) => {
+    const found = await page.evaluate(() => {
+      const table = document.querySelector("article table"), names = [...table.querySelectorAll("th")].map((th) => th.textContent);
+      return { shown: table.clientWidth, whole: table.scrollWidth, widths: Object.fromEntries(names.map((name, i) => [name, table.querySelector("tbody tr").children[i].clientWidth])),
+        paths: [...table.querySelectorAll("td")].map((td) => td.innerText).filter((text) => /(src|tests)\/[\w/]+\.(hpp|cpp)/.test(text)).slice(0, 3), titled: table.querySelectorAll('a.code[title^="src/"]').length };
+    });
+    expect(found.paths.length === 0 && found.titled > 10, `${path} has paths in a table: ${found.paths}, ${found.titled} with titles`);
+    expect(found.whole <= found.shown && found.widths[column] >= 0.24 * found.shown, `${path}: its table is ${found.whole} of ${found.shown} wide, columns ${JSON.stringify(found.widths)}`);
+  });
+await open("reference/joints.html", {}, async (page) => {
+  const widths = await page.evaluate(() => [...document.querySelector("article table tbody tr").children].map((td) => td.clientWidth));
+  expect(widths[2] === Math.max(...widths), `the meaning of joints is not the widest column of ${widths}`);
+});
 // Contents of the site: five quick starts, every example with its picture, help, terms of other programs, interfaces, the theory as one file.
 const examples = join(dirname(fileURLToPath(import.meta.url)), "../../examples"), all = readdirSync(examples).filter((name) => existsSync(join(examples, name, "model.yaml")));
 await open("gallery.html", {}, async (page) => {
