@@ -6,6 +6,8 @@ import {
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { discsFor } from "./balls";
 import type { Four, Scene, Triple } from "./data";
+import { type Edges, edgesFor, outlined, outlines } from "./edges";
+import { shaped } from "./inertia";
 import { software, surface, type Surface } from "./materials";
 import type { Poses } from "./poses";
 
@@ -20,7 +22,7 @@ export const quaternion = (q: Four | undefined): Quaternion => (q ? new Quaterni
 export const vector = (v: Triple | undefined): Vector3 => (v ? new Vector3(...v) : new Vector3());
 
 interface Part { body: number; local: Matrix4 }
-interface Batch { parts: Part[]; solid: InstancedMesh; ghost: InstancedMesh; discs: InstancedMesh | null }
+interface Batch { parts: Part[]; inertia: boolean; solid: InstancedMesh; ghost: InstancedMesh; discs: InstancedMesh | null; edges: Edges | null; ghostEdges: Edges | null }
 
 /** Layer of invisible objects for picking. */
 export const kUnseen = 1;
@@ -45,9 +47,13 @@ export class Bodies {
   private shadows = false;
   /** Common colour of all bodies of a compared recording. */
   tint: Color | null = null;
+  /** Place of each body in the order of colours. */
+  readonly hues: number[];
+  private edgesOn = true;
 
   private constructor(private readonly scene: Scene, private readonly poses: Poses) {
     this.showing = scene.manifest.bodies.map(() => "shown");
+    this.hues = scene.manifest.bodies.map((_, i) => i);
   }
 
   static async of(scene: Scene, poses: Poses): Promise<Bodies> {
@@ -61,7 +67,7 @@ export class Bodies {
     if (body === this.chosen) return kChosen;
     if (this.tint) return this.tint;
     if (entry.mark) return new Color("#d9822b");
-    return new Color(entry.fixed ? kFixed : kPalette[body % kPalette.length]);
+    return new Color(entry.fixed ? kFixed : kPalette[this.hues[body] % kPalette.length]);
   }
 
   private async build(): Promise<void> {
@@ -92,9 +98,9 @@ export class Bodies {
       if (smooth) geometry.computeVertexNormals();
       geometry.computeBoundingSphere();
       const make = (ghost: boolean): InstancedMesh => {
-        const material = surface({ roughness: 0.62, metalness: 0.05, side: FrontSide,
+        const material = surface({ roughness: 0.62, metalness: 0.05, side: FrontSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
           ...(ghost ? { transparent: true, opacity: 0.16, depthWrite: false } : {}) });
-        const mesh = new InstancedMesh(geometry, material, parts[k].length);
+        const mesh = new InstancedMesh(geometry, outlined(material), parts[k].length);
         mesh.frustumCulled = false;
         mesh.castShadow = !ghost;
         mesh.receiveShadow = !ghost;
@@ -102,7 +108,10 @@ export class Bodies {
         this.group.add(mesh);
         return mesh;
       };
-      const batch: Batch = { parts: parts[k], solid: make(false), ghost: make(true), discs: null };
+      const solid = make(false), ghost = make(true), smoothly = smooth && m.meshes[k].type !== "mesh";
+      const edges = smoothly ? null : edgesFor(solid, flat, 0x101820, 0.55), ghostEdges = smoothly ? null : edgesFor(ghost, flat, 0x101820, 0.3);
+      const batch: Batch = { parts: parts[k], inertia: m.meshes[k].type === "inertia", solid, ghost, discs: null, edges, ghostEdges };
+      for (const lines of [edges, ghostEdges]) if (lines) this.group.add(lines);
       if (m.meshes[k].type === "sphere" && (software || m.bodies.length > 500)) this.group.add(batch.discs = discsFor(batch.solid));
       this.batches.push(batch);
     }
@@ -138,22 +147,79 @@ export class Bodies {
     this.setOpen(this.open);
   }
 
-  /** Opacity of ghosts. */
-  setGhostOpacity(opacity: number): void { for (const { ghost } of this.batches) (ghost.material as Surface).opacity = opacity; }
+  /** Opacity of ghosts, and look of their edges. */
+  setGhostLook(opacity: number, edges: string, edgeOpacity: number, behind: boolean): void {
+    for (const { ghost, ghostEdges } of this.batches) {
+      // Behind the same surface of another recording.
+      Object.assign(ghost.material, { opacity, polygonOffsetFactor: behind ? 4 : 1, polygonOffsetUnits: behind ? 4 : 1 });
+      if (ghostEdges) ghostEdges.depth.value = behind ? 1.006 : 1;
+      if (ghostEdges) Object.assign(ghostEdges.material, { color: new Color(edges), opacity: edgeOpacity });
+    }
+  }
+  /** Whether edges and outlines are drawn. */
+  setEdges(on: boolean): void {
+    this.edgesOn = on;
+    outlines.value = on ? 1 : 0;
+    this.update();
+  }
 
-  /** Box around all bodies at the present time, without planes; of ghosts the centre of mass only. */
-  box(): Box3 {
+  /** Boxes of mass and inertia, in place of shapes: diagonals [m], and whether they are much longer than wide; `local` can be scaled. */
+  inertiaBoxes(): { body: number; diagonal: number; slender: boolean; local: Matrix4 }[] {
+    return this.batches.filter((batch) => batch.inertia).flatMap(({ parts, solid }) => {
+      solid.geometry.computeBoundingBox();
+      // Boxes have the principal axes of inertia, which the body's own axes need not be: sides are measured between corners.
+      const corners = solid.geometry.getAttribute("position"), first = new Vector3().fromBufferAttribute(corners, 0), other = new Vector3();
+      const sides = Array.from({ length: corners.count }, (_, i) => first.distanceTo(other.fromBufferAttribute(corners, i))).filter((d) => d > 0).sort((a, b) => a - b);
+      const diagonal = sides[sides.length - 1] ?? 0, slender = (sides.filter((d, i) => i === 0 || d > 1.001 * sides[i - 1])[1] ?? 0) < 0.4 * diagonal;
+      return parts.map(({ body, local }) => ({ body, diagonal, slender, local }));
+    });
+  }
+
+  /** Box around all bodies at the present time, without planes; of ghosts, and of boxes of inertia unless `inertia`, the centre of mass only,
+   *  of boxes beside shapes nothing. */
+  box(inertia = false): Box3 {
     const all = new Box3(), matrix = new Matrix4(), one = new Box3();
     for (const batch of this.batches) {
       batch.solid.geometry.computeBoundingBox();
       for (const part of batch.parts) {
-        if (this.showing[part.body] !== "shown") {
+        if (batch.inertia ? !inertia : this.showing[part.body] !== "shown") {
+          if (batch.inertia && shaped(this.scene)) continue;
           all.expandByPoint(this.poses.r_of(part.body, new Vector3()));
           continue;
         }
         one.copy(batch.solid.geometry.boundingBox as Box3).applyMatrix4(this.poses.matrix_of(part.body, matrix).multiply(part.local));
         all.union(one);
       }
+    }
+    return all;
+  }
+
+  /** Number of points of specialPoints() of all bodies, about. */
+  get specialCount(): number { return this.batches.reduce((sum, { edges, parts }) => sum + (edges ? edges.geometry.getAttribute("position").count * parts.length : 0), 0); }
+  /** Corners and middles of the edges of a body, relative to its centre of mass in its own axes. */
+  specialPoints(body: number): { local: Vector3; what: string }[] {
+    const found: { local: Vector3; what: string }[] = [];
+    for (const { parts, edges, inertia } of this.batches) {
+      if (!edges || inertia) continue;
+      const ends = edges.geometry.getAttribute("position") as BufferAttribute;
+      for (const part of parts) {
+        if (part.body !== body) continue;
+        for (let i = 0; i + 1 < ends.count; i += 2) {
+          const [a, b] = [i, i + 1].map((k) => new Vector3().fromBufferAttribute(ends, k).applyMatrix4(part.local));
+          found.push({ local: a, what: "corner" }, { local: b, what: "corner" }, { local: a.clone().lerp(b, 0.5), what: "middle of an edge" });
+        }
+      }
+    }
+    return found;
+  }
+
+  /** Box around the shapes of one body at the present time; empty if it has none. */
+  boxOf(body: number): Box3 {
+    const all = new Box3(), matrix = new Matrix4();
+    for (const { parts, solid } of this.batches) {
+      solid.geometry.computeBoundingBox();
+      for (const part of parts)
+        if (part.body === body) all.union(new Box3().copy(solid.geometry.boundingBox as Box3).applyMatrix4(this.poses.matrix_of(body, matrix).multiply(part.local)));
     }
     return all;
   }
@@ -182,7 +248,7 @@ export class Bodies {
 
   update(): void {
     const matrix = new Matrix4();
-    for (const { parts, solid, ghost } of this.batches) {
+    for (const { parts, solid, ghost, edges, ghostEdges } of this.batches) {
       let ghosts = false;
       parts.forEach((part, i) => {
         const showing = this.showing[part.body];
@@ -193,6 +259,8 @@ export class Bodies {
         ghosts ||= faint;
       });
       ghost.visible = ghosts;
+      if (edges) edges.visible = this.edgesOn;
+      if (ghostEdges) ghostEdges.visible = ghosts && this.edgesOn;
       solid.instanceMatrix.needsUpdate = ghost.instanceMatrix.needsUpdate = true;
       solid.boundingSphere = ghost.boundingSphere = null;
     }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A second recording, drawn as a ghost over the first one at the same time.
-import { Color, Group, Mesh, type Object3D, Vector3 } from "three";
+import { type Box3, Color, Group, Mesh, type Object3D } from "three";
 import { Bodies } from "./bodies";
 import type { Scene } from "./data";
 import { Joints, Loads } from "./glyphs";
+import { shaped, sizeInertia } from "./inertia";
 import { Lines } from "./lines";
 import type { Surface } from "./materials";
 import { Poses } from "./poses";
 import { Solids } from "./solids";
+import type { View } from "./view";
 
 const kTint = "#e8590c";
 const kOpacity = 0.42;
@@ -19,6 +21,8 @@ function faint(object: Object3D, on: boolean): void {
     material.transparent = on;
     material.opacity = on ? kOpacity : 1;
     material.depthWrite = !on;
+    material.polygonOffset = true;
+    material.polygonOffsetFactor = material.polygonOffsetUnits = on ? 4 : 1;  // behind the same surface of the first recording
     material.needsUpdate = true;
     part.castShadow = part.receiveShadow = !on;
   });
@@ -31,10 +35,13 @@ export class Ghost {
   private size = 1;
   private alone = false;
 
-  static async of(scene: Scene, name: string): Promise<Ghost> {
+  /** @param view  the recording that it is compared with: objects of equal names have equal colours, and lines equal widths. */
+  static async of(scene: Scene, name: string, view: View): Promise<Ghost> {
     const m = scene.manifest, poses = await Poses.of(scene), bodies = await Bodies.of(scene, poses), solids = await Solids.of(scene, poses);
-    const lines = await Lines.of(scene, poses, () => bodies.box().getSize(new Vector3()).length() || 1);
+    const lines = await Lines.of(scene, poses, () => view.width);
     const joints = new Joints(m.joints, poses), ghost = new Ghost(scene, name, poses, bodies, solids, lines, joints, new Loads(m.loads, m.joints, joints, poses));
+    const first = view.scene, places = new Map(first.manifest.bodies.map((body, i) => [body.name, i]));
+    m.bodies.forEach((body, i) => { bodies.hues[i] = places.get(body.name) ?? first.manifest.bodies.length + i; });
     await ghost.setAlone(false);
     ghost.group.add(bodies.group, solids.group, lines.group, ghost.joints.group, ghost.loads.group);
     ghost.set(m.time[0]);
@@ -48,7 +55,7 @@ export class Ghost {
     bodies.tint = on ? null : new Color(kTint);
     bodies.plain = !on;
     // Fixed objects are the same in both; boxes of inertia would hide bodies with shapes.
-    const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
+    const shapes = shaped(this.scene);
     m.bodies.forEach((body, i) => {
       const part = body.parts?.[0]?.mesh, inertia = shapes && part !== undefined && m.meshes[part].type === "inertia";
       bodies.showing[i] = on ? (inertia ? "ghost" : "shown") : body.fixed || inertia ? "hidden" : "shown";
@@ -61,7 +68,8 @@ export class Ghost {
   }
   setRange(range: [number, number]): void { this.solids.range = range; this.solids.fixedRange = true; }
   setShadows(on: boolean): void { this.bodies.setShadows(on); }
-  setFaintLight(on: boolean): void { this.bodies.setGhostOpacity(on ? kOpacity : 0.16); }
+  setFaintLight(on: boolean): void { this.bodies.setGhostLook(on ? kOpacity : 0.16, on ? kTint : "#101820", on ? 1 : 0.3, on); }
+  setEdges(on: boolean): void { this.bodies.setEdges(on); }
   /** Objects for picking. */
   get objects(): Object3D[] { return [this.bodies.group, this.solids.group, this.lines.group]; }
 
@@ -79,8 +87,9 @@ export class Ghost {
   }
 
   /** Extent of both recordings, for the size of planes and joints. */
-  setSize(size: number): void {
+  setSize(size: number, box: Box3): void {
     this.size = size;
+    sizeInertia(this.scene, this.bodies, box);
     this.bodies.sizePlanes(size);
   }
 

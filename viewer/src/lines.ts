@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Beams with their sections, cables as ropes.
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, Mesh, Quaternion, Vector3 } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, Mesh, Quaternion, Vector3 } from "three";
 import type { Scene } from "./data";
 import { surface } from "./materials";
 import type { Poses } from "./poses";
@@ -55,6 +55,12 @@ export class Lines {
     let most = 0;
     if (tension) for (const t of tension) most = Math.max(most, t);
     this.list.push({ kind, index, nodes, position, orientation, outline, geometry, mesh, tension, most });
+  }
+
+  /** Box around a beam or cable at the present time. */
+  boxOf(kind: string, index: number): Box3 {
+    const line = this.list.find((l) => l.kind === kind && l.index === index);
+    return line ? new Box3().setFromBufferAttribute(line.geometry.getAttribute("position") as BufferAttribute) : new Box3();
   }
 
   box(out: { expandByPoint(p: Vector3): unknown }): void {

@@ -2,16 +2,20 @@
 import { bookmarkOf, follow } from "./bookmark";
 import { Scene } from "./data";
 import { figure, h, save } from "./dom";
+import { ExtremesPanel } from "./extremes";
 import { filmWanted, shoot } from "./film";
 import { Ghost } from "./ghost";
 import { displayPanel, Legend, ObjectPanel, objectsOf } from "./panels";
 import { Player } from "./player";
-import { Plot, type Mode } from "./plots";
+import { PlotArea } from "./plot_area";
+import type { Mode } from "./plots";
+import { firstPlots, probesOf } from "./probes";
 import { offered, seriesOf } from "./series";
+import { quantity } from "./units";
 import { View, type Choice } from "./view";
 
 const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, initial view"],
-  ["o", "parallel projection"], ["f", "follow the selected object"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["v", "compared recording side by side"], ["/", "search"],
+  ["o", "parallel projection"], ["f", "follow the selected object"], ["z", "zoom to the selected object, or to all"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["v", "compared recording side by side"], ["/", "search"],
   ["d", "dark or light"], ["b", "write camera and time into the address"], ["Esc", "clear the selection"], ["?", "this list"]];
 
 /** Speed at which a recording takes about ten seconds, from 1, 2, 5 times a power of ten; real time if that is near. */
@@ -31,16 +35,15 @@ async function start(app: HTMLElement): Promise<void> {
 
   const holder = h("main", { class: "view", "aria-label": "Animation" });
   const drift = h("span", { class: "drift", title: "Largest error of the energy balance so far, over the largest energy; the same number as in the summary of the run" });
-  const head = h("header", {}, h("h1", {}, m.title || m.source.file || "Model"), drift);
+  const title = m.title || m.source.file || "Model", head = h("header", {}, h("h1", { title }, title), drift);
   const side = h("aside", { "aria-label": "Objects and display" });
-  const plots = h("section", { class: "plots", "aria-label": "Plots", hidden: true });
   const bar = h("footer", { class: "time" });
-  app.replaceChildren(head, holder, side, plots, bar);
+  app.replaceChildren(head, holder, side, bar);
   if (innerWidth <= 720) app.classList.add("wide");
 
   const view = await View.of(scene, holder);
   const other = m.compared ? await Scene.load(true) : null;
-  if (other) view.compare(await Ghost.of(other, m.compared ?? ""));
+  if (other) view.compare(await Ghost.of(other, m.compared ?? "", view));
   const { canvas } = view.stage;
   canvas.setAttribute("tabindex", "0");
   canvas.setAttribute("role", "img");
@@ -51,29 +54,17 @@ async function start(app: HTMLElement): Promise<void> {
   const theme = (on: boolean): void => {
     document.documentElement.dataset.theme = on ? "dark" : "light";
     view.stage.theme(on);
-    for (const plot of open) plot.redraw();
+    plots.redraw();
   };
-  const open: Plot[] = [];
-  const clock = { time: () => player.t, seek: (t: number) => player.seek(t) };
-  const openPlot = (names: string[], mode: Mode = "time"): void => {
-    const plot = new Plot(scene, clock, names, (p) => {
-      open.splice(open.indexOf(p), 1);
-      p.element.remove();
-      plots.hidden = open.length === 0;
-    }, mode, other);
-    open.push(plot);
-    plots.append(plot.element);
-    plots.hidden = false;
-  };
-  const addPlot = async (name: string, own: boolean): Promise<void> => {
-    const last = open[open.length - 1];
-    if (own || !last) openPlot([name]); else await last.add(name);
-  };
+  const probes = probesOf(scene);
+  const plots: PlotArea = new PlotArea(scene, { time: () => player.t, seek: (t: number) => player.seek(t) }, other, () => void extremes.refresh());
+  const extremes = new ExtremesPanel(scene, probes, () => plots.curves(), (t) => player.seek(t));
+  bar.before(plots.element);
   const choose = (choice: Choice | null): void => {
     view.choose(choice);
     void objects.choose(choice);
   };
-  const objects = new ObjectPanel(scene, view, { choose, plot: (name) => void addPlot(name, false), refresh: () => { view.stage.dirty = true; } });
+  const objects = new ObjectPanel(scene, view, { choose, plot: (name) => void plots.add(name, false), refresh: () => { view.stage.dirty = true; } });
   const legend = new Legend(view);
   holder.append(legend.element);
 
@@ -82,11 +73,11 @@ async function start(app: HTMLElement): Promise<void> {
   const tryPlot = async (own: boolean): Promise<void> => {
     const found = await seriesOf(scene, search.value);
     trouble.textContent = found.length === 0 ? `There is no channel '${search.value}'.` : "";
-    if (found.length > 0) await addPlot(search.value, own);
+    if (found.length > 0) await plots.add(search.value, own);
   };
   const has = (path: string): boolean => scene.entry(path) !== undefined;
   const preset = (label: string, names: string[], mode: Mode = "time") =>
-    names.every((n) => has(n.replaceAll(".", "/"))) ? h("button", { type: "button", onclick: () => openPlot([...names], mode) }, label) : null;
+    names.every((n) => has(n.replaceAll(".", "/"))) ? h("button", { type: "button", onclick: () => plots.openPlot([...names], mode) }, label) : null;
   const plotPanel = h("div", { class: "panel" }, h("datalist", { id: "channels" }, ...offered(scene).slice(0, 1500).map((name) => h("option", { value: name }))),
     h("div", { class: "addplot" }, search, h("button", { type: "button", onclick: () => void tryPlot(false) }, "Add"), h("button", { type: "button", onclick: () => void tryPlot(true) }, "New plot")), trouble,
     h("div", { class: "buttons" }, preset("Energy drift", ["energy.drift"]), preset("Ledger", ["energy.kinetic", "energy.potential", "energy.dissipated"], "stacked"),
@@ -96,7 +87,7 @@ async function start(app: HTMLElement): Promise<void> {
   search.addEventListener("keydown", (e) => { if (e.key === "Enter") void tryPlot(false); });
 
   const display = displayPanel(view, () => { tick(); view.stage.dirty = true; }, theme);
-  const panels = [["Objects", objects.element], ["Display", display], ["Plot", plotPanel]] as const;
+  const panels = [["Objects", objects.element], ["Display", display], ["Plot", plotPanel], ["Extremes", extremes.element]] as const;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Panels" });
   panels.forEach(([label, panel], i) => {
     panel.id = `panel-${i}`;
@@ -107,6 +98,7 @@ async function start(app: HTMLElement): Promise<void> {
   const tab = (k: number): void => panels.forEach(([, panel], i) => {
     panel.hidden = i !== k;
     tabs.children[i].setAttribute("aria-selected", String(i === k));
+    if (panel === extremes.element) void extremes.show(i === k);
   });
   tab(0);
   side.append(tabs, ...panels.map(([, panel]) => panel));
@@ -175,10 +167,10 @@ async function start(app: HTMLElement): Promise<void> {
     legend.tick();
     const sides = holder.querySelector<HTMLElement>(".sides"), note = holder.querySelector<HTMLElement>(".compared");
     if (sides && note) { sides.hidden = !view.beside; note.hidden = view.beside; }
-    for (const plot of open) plot.tick();
+    plots.tick();
     const measured = view.measured();
     ruler.hidden = !view.measuring && !measured;
-    if (!ruler.hidden) ruler.textContent = measured ? `${figure(measured.distance)} m${Number.isFinite(measured.angle) ? `, ${figure(measured.angle * 180 / Math.PI)}°` : ""}` : "Click two points, or three for an angle.";
+    if (!ruler.hidden) ruler.textContent = measured ? `${quantity(measured.distance, "m")}${Number.isFinite(measured.angle) ? `, ${figure(measured.angle * 180 / Math.PI)}°` : ""}${measured.between ? ` (${measured.between})` : ""}` : "Click two points, or three for an angle.";
   };
   player.onchange(tick);
 
@@ -186,16 +178,17 @@ async function start(app: HTMLElement): Promise<void> {
   canvas.addEventListener("pointerdown", (e) => { down = [e.clientX, e.clientY]; });
   canvas.addEventListener("pointerup", (e) => {
     if (Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return;
-    const hit = view.pick(e.clientX, e.clientY);
-    if (view.measuring && hit) { view.addMark(hit.choice, hit.point); tick(); } else choose(hit?.choice ?? null);
+    const spot = view.measuring ? view.spot(e.clientX, e.clientY) : null;
+    if (spot) { view.addMark(spot); tick(); } else choose(view.pick(e.clientX, e.clientY)?.choice ?? null);
   });
+  canvas.addEventListener("pointermove", (e) => { if (view.measuring && e.buttons === 0) view.point(view.spot(e.clientX, e.clientY)); });
 
   const chosenBody = (): number => (view.chosen?.kind === "body" ? view.chosen.index : -1);
   const keys: Record<string, () => void> = {
     " ": () => player.toggle(), ArrowRight: () => player.seek(m.time[Math.min(m.frames - 1, view.poses.frame + 1)]), ArrowLeft: () => player.seek(m.time[Math.max(0, view.poses.part > 0 ? view.poses.frame : view.poses.frame - 1)]),
     Home: () => player.seek(player.begin), End: () => player.seek(player.end), "+": () => changeSpeed(1), "-": () => changeSpeed(-1), Escape: () => { view.measuring = false; view.clearMarks(); choose(null); tick(); },
-    f: () => view.setFollow(!view.follow), m: () => { view.measuring = !view.measuring; view.clearMarks(); tick(); }, t: () => view.setTrails(!view.trailsOn), a: () => view.showAll(), "?": () => help.showModal(), b: () => link(),
-    d: () => theme(document.documentElement.dataset.theme !== "dark"), p: () => { if (open.length === 0) openPlot(has("energy/kinetic") ? ["energy.kinetic", "energy.potential"] : [offered(scene)[0]]); else plots.hidden = !plots.hidden; },
+    f: () => view.setFollow(!view.follow), z: () => view.fit(), m: () => { view.measuring = !view.measuring; view.clearMarks(); tick(); }, t: () => view.setTrails(!view.trailsOn), a: () => view.showAll(), "?": () => help.showModal(), b: () => link(),
+    d: () => theme(document.documentElement.dataset.theme !== "dark"), p: () => { if (plots.open.length === 0) plots.openPlot(has("energy/kinetic") ? ["energy.kinetic", "energy.potential"] : [offered(scene)[0]]); else plots.toggle(); },
     "/": () => { app.classList.remove("wide"); tab(0); objects.focus(); }, o: () => view.stage.setParallel(view.stage.camera !== view.stage.parallel),
     c: () => { if (view.ghost) display.querySelector<HTMLInputElement>(".ghost input")?.click(); },
     v: () => { if (view.ghost) display.querySelector<HTMLInputElement>(".beside input")?.click(); },
@@ -206,9 +199,14 @@ async function start(app: HTMLElement): Promise<void> {
     speed.selectedIndex = Math.min(speeds.length - 1, Math.max(0, speed.selectedIndex + by));
     player.speed = Number(speed.value);
   };
+  // Space plays, also after a click on a control; one that was reached with the keyboard takes it for itself.
+  let byKeyboard = false;
+  addEventListener("pointerdown", () => { byKeyboard = false; }, true);
+  addEventListener("keydown", (e) => { if (e.key === "Tab") byKeyboard = true; }, true);
+  addEventListener("keyup", (e) => { if (e.key === " " && !byKeyboard && (e.target as HTMLElement).matches("button, input[type=checkbox]")) e.preventDefault(); });
   addEventListener("keydown", (e) => {
     const target = e.target as HTMLElement;
-    if (e.ctrlKey || e.metaKey || e.altKey || help.open || target.matches("input:not([type=range]):not([type=checkbox]), select") || (e.key === " " && target.matches("button, input, pre"))) return;
+    if (e.ctrlKey || e.metaKey || e.altKey || help.open || target.matches(`input:not([type=range]):not([type=checkbox])${e.key === " " && !byKeyboard ? "" : ", select"}`) || (e.key === " " && byKeyboard && target.matches("button, input, pre"))) return;
     if (target.matches("input[type=range]") && e.key.startsWith("Arrow")) return;
     const act = keys[e.key];
     if (!act) return;
@@ -217,6 +215,7 @@ async function start(app: HTMLElement): Promise<void> {
     view.stage.dirty = true;
   });
 
+  if (!filmWanted()) for (const names of firstPlots(probes, innerWidth <= 720 ? 1 : 2)) plots.openPlot(names);
   theme(dark);
   const bookmarked = follow(location.hash, view, player);
   if (bookmarked && objectsOf(scene).some((o) => o.kind === bookmarked.kind && o.index === bookmarked.index)) choose(bookmarked);
@@ -226,6 +225,8 @@ async function start(app: HTMLElement): Promise<void> {
   document.documentElement.dataset.ready = String(Math.round(performance.now() - begun));
 
   if (filmWanted()) return shoot(view, player, app, holder);
+  // A link to a time shows that time; who wants less motion starts it.
+  if (m.frames > 1 && !/[#&]t=/.test(location.hash) && !matchMedia("(prefers-reduced-motion: reduce)").matches) player.toggle();
   let last = performance.now(), frames = 0, slow = 0;
   const loopFrame = (now: number): void => {
     // Three slow pictures in a row during playback: the rendering effort is reduced.

@@ -6,6 +6,7 @@ import { figure, h } from "./dom";
 import { valuesAt } from "./poses";
 import { quantitiesOf, seriesOf } from "./series";
 import { mapped } from "./solids";
+import { largest, prefixed } from "./units";
 import type { Choice, View } from "./view";
 
 export interface Actions { choose(choice: Choice | null): void; plot(name: string): void; refresh(): void }
@@ -75,7 +76,8 @@ export class ObjectPanel {
       button("Isolate", () => this.view.isolate(choice.index));
     }
     if (choice.kind === "solid") button("Hide", () => { this.view.solids.hidden[choice.index] = !this.view.solids.hidden[choice.index]; this.view.update(); });
-    if (choice.kind === "body" || choice.kind === "joint") button(this.view.follow ? "Do not follow" : "Follow", () => { this.view.setFollow(!this.view.follow); void this.choose(choice); });
+    if (!this.view.boxOf(choice).isEmpty()) button("Fit", () => this.view.fit());
+    if (this.view.placeOf(choice)) button(this.view.follow ? "Do not follow" : "Follow", () => { this.view.setFollow(!this.view.follow); void this.choose(choice); });
     button("Show all", () => this.view.showAll());
     const table = h("table", {}, h("caption", { class: "hidden" }, `Values of ${object.name}`));
     const mark = choice.kind === "joint" ? this.scene.manifest.joints[choice.index].mark : choice.kind === "body" ? this.scene.manifest.bodies[choice.index].mark : undefined;
@@ -84,9 +86,10 @@ export class ObjectPanel {
     for (const name of quantitiesOf(this.scene, choice.kind, object.name)) {
       const series = await seriesOf(this.scene, name);
       if (series.length === 0 || this.shown !== choice) continue;
+      const { unit, factor } = prefixed(series[0].unit, largest(series.map((s) => s.values)));
       const short = name.slice(name.lastIndexOf(".") + 1).replaceAll("_", " "), cell = h("td", { class: "number" });
-      this.cells.push({ cell, at: (f, part) => series.map((s) => figure(valuesAt(s.values as unknown as Float32Array, 1, 0, 1, f, part)[0])).join("  ") });
-      rows.push(h("tr", {}, h("th", { scope: "row" }, short), cell, h("td", { class: "faint" }, series[0].unit === "-" ? "" : series[0].unit),
+      this.cells.push({ cell, at: (f, part) => series.map((s) => figure(factor * valuesAt(s.values as unknown as Float32Array, 1, 0, 1, f, part)[0])).join("  ") });
+      rows.push(h("tr", {}, h("th", { scope: "row" }, short), cell, h("td", { class: "faint" }, unit === "-" ? "" : unit),
         h("td", {}, h("button", { type: "button", title: `Plot ${short}`, "aria-label": `Plot ${short} of ${object.name}`, onclick: () => this.actions.plot(name) }, "∿"))));
     }
     if (this.shown !== choice) return;
@@ -143,7 +146,7 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
   view.onshadows = () => { (shadows.firstChild as HTMLInputElement).checked = view.stage.shadows; };
   return h("div", { class: "panel" }, camera,
     part("Show", view.ghost ? check(`Ghost of ${view.ghost.name} (c)`, true, (on) => view.showGhost(on)) : null, view.ghost ? check(`Side by side with ${view.ghost.name} (v)`, false, (on) => void view.setBeside(on).then(update)) : null, check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
-      check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }), shadows,
+      check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }), check("Edges and outlines", true, (on) => view.setEdges(on)), shadows,
       check("Trails", false, (on) => view.setTrails(on)), check("Centres of mass", false, (on) => { view.centres.visible = on; }), check("Body axes", false, (on) => { view.frames.visible = on; }),
       m.joints.length > 0 ? slide("Size of joints", 0.1, 5, 1, (x) => { view.joints.scale = view.loads.scale = x; }) : null),
     all.length > 0 ? part("Forces", contacts ? check("Contact forces", true, (on) => { contacts.group.visible = on; }) : null, reactions ? check("Reactions of joints", false, (on) => { reactions.group.visible = on; }) : null,
@@ -202,10 +205,10 @@ export class Legend {
     const { solids } = this.view, on = this.view.scene.manifest.solids.length > 0 && solids.choice >= 0;
     this.element.hidden = !on;
     if (!on) return;
-    const label = solids.choices[solids.choice].label.replaceAll("_", " "), [low, high] = solids.range;
-    this.title.textContent = `${label} [${solids.unit}]`;
-    const ticks = [4, 3, 2, 1, 0].map((k) => figure(low + k / 4 * (high - low)));
+    const label = solids.choices[solids.choice].label.replaceAll("_", " "), [low, high] = solids.range, { unit, factor } = prefixed(solids.unit, Math.max(Math.abs(low), Math.abs(high)));
+    this.title.textContent = `${label} [${unit}]`;
+    const ticks = [4, 3, 2, 1, 0].map((k) => figure(factor * (low + k / 4 * (high - low))));
     if (this.text.textContent !== ticks.join("")) this.text.replaceChildren(...ticks.map((s) => h("span", {}, s)));
-    this.element.setAttribute("aria-label", `Colours: ${label} from ${figure(low)} to ${figure(high)} ${solids.unit}`);
+    this.element.setAttribute("aria-label", `Colours: ${label} from ${figure(factor * low)} to ${figure(factor * high)} ${unit}`);
   }
 }

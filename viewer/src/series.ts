@@ -55,7 +55,7 @@ function find(scene: Scene, name: string): { found: Found; rest: string; head: s
       return packed("joints", joint.index, m.joints.length, joint.quantity, joint.rest);
     const entry = scene.entry(`packed/joints/${joint.quantity}`), own = m.joints[joint.index];
     if (!entry || !own.count) return null;
-    const unit = joint.quantity === "coordinates" ? "rad or m" : "rad/s or m/s";
+    const one = { revolute: "rad", prismatic: "m" }[own.type ?? ""] ?? "rad or m", unit = joint.quantity === "coordinates" ? one : one.replace(/rad|m/g, "$&/s");
     return { found: { path: entry.path, at: own.first ?? 0, size: own.count, unit, labels: Array.from({ length: own.count }, (_, i) => `${i}`) },
       rest: joint.rest, head: `joints.${own.name}.${joint.quantity}` };
   }
@@ -120,9 +120,11 @@ export function quantitiesOf(scene: Scene, kind: string, name: string): string[]
   }
   if (kind === "load") return (scene.manifest.loads.find((l) => l.name === name)?.columns ?? []).map((c) => `loads.${name}.${c.name}`);
   if (kind === "contact") return kContact.filter((q) => scene.entry(`packed/contacts/${q}`)).map((q) => `contacts.${name}.${q}`);
-  const prefix = `${kind}s/${name}/`;
-  return scene.manifest.channels.filter((c) => c.path.startsWith(prefix)).map((c) => c.path.replaceAll("/", "."));
+  return offeredUnder(scene, `${kind}s/${name}/`);
 }
+
+/** Names of channels whose paths begin with a text. */
+export const offeredUnder = (scene: Scene, head: string): string[] => scene.manifest.channels.filter((c) => c.path.startsWith(head)).map((c) => c.path.replaceAll("/", "."));
 
 /** Names for completion; for many objects only a part. */
 export function offered(scene: Scene): string[] {

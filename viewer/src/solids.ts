@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh, type Vector3 } from "three";
 import type { FieldEntry, Scene, SolidEntry } from "./data";
 import { surface } from "./materials";
 import type { Poses } from "./poses";
@@ -135,11 +135,21 @@ export class Solids {
     return Math.sqrt(sum);
   }
 
-  box(out: { expandByPoint(p: { x: number; y: number; z: number }): unknown }): void {
-    for (const { geometry } of this.own) {
-      const p = geometry.getAttribute("position").array;
-      for (let i = 0; i < p.length; i += 3) out.expandByPoint({ x: p[i], y: p[i + 1], z: p[i + 2] });
-    }
+  /** A node of a solid at the present time. */
+  node(index: number, node: number, out: Vector3): Vector3 {
+    const own = this.own.find((o) => o.index === index);
+    return own ? out.fromBufferAttribute(own.geometry.getAttribute("position") as BufferAttribute, node) : out;
+  }
+  /** Node at a corner of what a ray has met: elements in colours have corners of their own. */
+  shownNode(index: number, corner: number): number {
+    const cells = this.own.find((o) => o.index === index)?.cells;
+    return cells?.mesh.visible ? cells.corners[corner] : corner;
+  }
+
+  /** Box around all solids at the present time, or around one of them. */
+  box(out: Box3, index = -1): void {
+    const one = new Box3();
+    for (const own of this.own) if (index < 0 || own.index === index) out.union(one.setFromBufferAttribute(own.geometry.getAttribute("position") as BufferAttribute));
   }
 
   update(): void {

@@ -34,6 +34,7 @@ export class Stage {
   looking: Vector3 | null = null;
   size = 1;
   dirty = true;
+  private drawn = false;  // a picture whose size changes is drawn again at once: it would be empty until the next one
   /** Size of the pictures of a film; null: that of the window. */
   fixedSize: [number, number] | null = null;
   /** Two pictures side by side with one camera; called with 0 and 1 before each is drawn, and with −1 afterwards. */
@@ -51,11 +52,12 @@ export class Stage {
     this.sun.castShadow = shadows && !software;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.controls = new OrbitControls(this.perspective, this.canvas);
+    this.controls.zoomToCursor = true;
     const before = new Vector3();  // a click alone moves no camera
     this.controls.addEventListener("start", () => { before.copy(this.camera.position); });
     this.controls.addEventListener("end", () => { if (this.camera.position.distanceTo(before) > 1e-9 * this.size) this.looking = null; });
     this.controls.addEventListener("change", () => { this.dirty = true; });
-    new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); }).observe(holder);
+    new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); if (this.drawn) this.draw(); }).observe(holder);
   }
 
   private makeRenderer(): WebGLRenderer | null {
@@ -162,8 +164,19 @@ export class Stage {
 
   /** View of the middle of the scene from a direction, at the smallest distance that shows all of it. */
   view(direction: Vector3): void {
+    this.aim(direction, this.box);
+    this.looking = direction.clone().normalize();
+  }
+
+  /** View of a part of the scene from the present direction. */
+  close(box: Box3): void {
+    this.aim(this.camera.position.clone().sub(this.controls.target), box);
+    this.looking = null;
+  }
+
+  private aim(direction: Vector3, box: Box3): void {
     this.resize();
-    const to = direction.clone().normalize(), middle = this.box.getCenter(new Vector3());
+    const to = direction.clone().normalize(), middle = box.getCenter(new Vector3());
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(to, this.size);
     this.camera.lookAt(middle);
@@ -172,16 +185,15 @@ export class Stage {
     const slope = Math.tan(this.perspective.fov * Math.PI / 360), aspect = this.perspective.aspect;
     let distance = 0, half = 0;
     for (let i = 0; i < 8; i++) {
-      const c = new Vector3(i & 1 ? this.box.max.x : this.box.min.x, i & 2 ? this.box.max.y : this.box.min.y, i & 4 ? this.box.max.z : this.box.min.z).sub(middle);
+      const c = new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).sub(middle);
       const high = Math.max(Math.abs(c.dot(above)), Math.abs(c.dot(right)) / aspect);
       distance = Math.max(distance, high / slope + c.dot(to));
       half = Math.max(half, high);
     }
-    this.camera.position.copy(middle).addScaledVector(to, Math.max(1.12 * distance, 0.05 * this.size));
+    this.camera.position.copy(middle).addScaledVector(to, Math.max(1.12 * distance, Math.min(0.05 * this.size, 4 * box.getSize(new Vector3()).length())));
     this.parallel.zoom = 0.6 * this.size / (1.12 * half || 1);
     this.resize();
     this.controls.update();
-    this.looking = to;
     this.dirty = true;
   }
 
@@ -201,6 +213,7 @@ export class Stage {
     this.renderer?.setSize(all, height);
     this.perspective.aspect = width / height;
     this.perspective.updateProjectionMatrix();
+    this.controls.zoomToCursor = !this.halves;  // the cursor's place in one of two pictures is not that in both
     const half = 0.6 * this.size, wide = half * width / height;
     Object.assign(this.parallel, { left: -wide, right: wide, top: half, bottom: -half });
     this.parallel.updateProjectionMatrix();
@@ -228,6 +241,13 @@ export class Stage {
     return caster;
   }
 
+  /** Place of a point in the window; null behind the eye. */
+  pixel(point: Vector3): Vector2 | null {
+    this.camera.updateMatrixWorld();
+    const p = point.clone().project(this.camera), box = this.canvas.getBoundingClientRect(), width = this.halves ? box.width / 2 : box.width;
+    return Math.abs(p.z) < 1 ? new Vector2(box.left + (p.x + 1) / 2 * width, box.top + (1 - p.y) / 2 * box.height) : null;
+  }
+
   /** Half of the window that contains a point: 0, or 1 for the right one of two. */
   halfAt(x: number): number {
     const box = this.canvas.getBoundingClientRect();
@@ -237,6 +257,7 @@ export class Stage {
   draw(): void {
     const { renderer } = this;
     this.dirty = false;
+    this.drawn = true;
     if (!renderer) return;
     const { width, height } = renderer.getSize(new Vector2());
     renderer.setScissorTest(this.halves !== null);

@@ -11,9 +11,9 @@ export async function launch(args = ["--use-angle=swiftshader", "--enable-unsafe
   return chromium.launch({ executablePath: program, args: ["--no-sandbox", ...args] });
 }
 
-/** A page that notes every message of the console, every fault and every request to a network. */
+/** A page that notes every message of the console, every fault and every request to a network; it stands still until it is played. */
 export async function openPage(browser, address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true, offline: !address.startsWith("http"), ...options });
+  const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true, offline: !address.startsWith("http"), reducedMotion: "reduce", ...options });
   // Drawing commands of the page to the graphics processor.
   await context.addInitScript(() => {
     window.drawCalls = 0;

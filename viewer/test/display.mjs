@@ -8,12 +8,12 @@ import { channels, chosen, expect, folder, page_of, picture, recorded, root, run
 
 await test("solids have colours, a legend and a choice of fields", async () => {
   const { page } = await page_of("tyre.html");
-  expect((await page.locator(".legend").textContent()).includes("von mises [Pa]"), "no legend");
+  expect(/von mises \[[kM]Pa\]/.test(await page.locator(".legend").textContent()), `the legend reads '${await page.locator(".legend").textContent()}'`);
   const before = await page.evaluate(() => document.querySelector(".view > canvas").toDataURL());
   await page.getByRole("tab", { name: "Display" }).click();
   await page.getByLabel("Field in colours").selectOption({ label: "displacement (size)" });
   await page.waitForTimeout(300);
-  expect((await page.locator(".legend").textContent()).includes("displacement (size) [m]"), "the legend stays");
+  expect((await page.locator(".legend").textContent()).includes("displacement (size) ["), "the legend stays");
   await page.keyboard.press("End");
   await page.waitForTimeout(300);
   expect(before !== await page.evaluate(() => document.querySelector(".view > canvas").toDataURL()), "the picture stays");
@@ -37,7 +37,7 @@ await test("elements of solids have colours of their own, and solids may have di
   await page.keyboard.press("Enter");
   expect(await picture(page) !== stretched, "the range changes nothing");
   await page.getByLabel("Field in colours").selectOption({ label: "von mises by element" });
-  await page.waitForFunction(() => document.querySelector(".legend").textContent.includes("von mises by element [Pa]"));
+  await page.waitForFunction(() => document.querySelector(".legend").textContent.includes("von mises by element ["));
   const flat = await picture(page);
   await page.getByLabel("Field in colours").selectOption({ label: "von mises" });
   await page.waitForTimeout(300);
@@ -98,7 +98,7 @@ await test("trails, centres, axes, parallel projection, section and follow chang
   await page.getByLabel("Time", { exact: true }).fill("40");
   await page.getByRole("tab", { name: "Display" }).click();
   const plain = await picture(page);
-  for (const label of ["Trails", "Centres of mass", "Body axes", "Parallel projection (o)", "Reactions of joints", "Ground grid", "World axes", "Springs and motors", "Bodies as ghosts"]) {
+  for (const label of ["Trails", "Centres of mass", "Body axes", "Parallel projection (o)", "Reactions of joints", "Ground grid", "World axes", "Edges and outlines", "Springs and motors", "Bodies as ghosts"]) {
     const box = page.getByLabel(label, { exact: true });
     await box.click();
     expect(await picture(page) !== plain, `${label} changes nothing`);
@@ -133,7 +133,7 @@ output: {every: 1 s}
 `);
   const distance = 20, { page } = await page_of(`plate.html#eye=0,-0.02,${distance}&at=0,0,0`);
   await page.getByRole("tab", { name: "Display" }).click();
-  for (const label of ["Ground grid", "World axes", "Joints"]) await page.getByLabel(label, { exact: true }).click();
+  for (const label of ["Ground grid", "World axes", "Joints", "Edges and outlines"]) await page.getByLabel(label, { exact: true }).click();
   const shadows = page.getByLabel("Shadows", { exact: true });
   expect(!await shadows.isChecked(), "without a graphics processor there are shadows that nobody wanted");
   /** Seen from above: area and centre, in metres on the ground, of what is not as bright as the empty ground, left and right of the middle. */

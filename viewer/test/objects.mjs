@@ -79,6 +79,50 @@ await test("two clicks measure a distance, three an angle", async () => {
   expect(angle && Math.abs(Number(angle[1]) - 90) < 3, `a right angle reads '${await ruler.textContent()}'`);
 });
 
+await test("measuring snaps to corners, centres, joints and nodes, which move with their objects", async () => {
+  recorded("snap", "format: 1\nbodies: {cube: {fixed: true, shape: {box: [1, 1, 1]}}, far: {shape: {box: [1, 1, 1]}, density: 1, position: [3, 0, 0], velocity: [0, 0, -1]}}\njoints: {rail: {type: prismatic, bodies: [ground, far], at: [1.5, 0, 0], axis: z}}\nanalysis: {duration: 0.1 s, step: 0.1 s}\n");
+  const { page } = await page_of("snap.html"), { x, y, width, height } = await page.locator(".view > canvas").boundingBox(), ruler = page.locator(".measure");
+  await page.keyboard.press("1");
+  await page.keyboard.press("o");
+  // The scene is 4.04 m from corner to corner at most; its middle is that of the picture. A metre has as many pixels as one between the cubes' outer edges.
+  const name = async (u, v) => { await page.keyboard.press("Escape"); await page.mouse.click(u, v); return chosen(page); };
+  const edge = async (from, to, wanted) => { for (let k = 0; k < 9; k++) { const m = (from + to) / 2; if (await name(m, y + height / 2) === wanted) from = m; else to = m; } return from; };
+  let inside = 0;
+  for (let i = 1; i < 40 && !inside; i++) if (await name(x + width * i / 40, y + height / 2) === "cube") inside = x + width * i / 40;
+  const left = await edge(inside, x, "cube"), right = await edge(inside, x + width / 2, "cube"), scale = right - left, middle = (left + right) / 2;
+  const bottom = await (async () => { let [from, to] = [y + height / 2, y + height]; for (let k = 0; k < 9; k++) { const m = (from + to) / 2; if (await name(middle, m) === "cube") from = m; else to = m; } return from; })();
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("m");
+  const reads = async (wanted) => { const text = await ruler.textContent(); expect(wanted.test(text), `the ruler reads '${text}'`); };
+  // A few pixels within the corner, and without it.
+  await page.mouse.click(left + 5, bottom - 4);
+  await page.mouse.click(right + 5, bottom + 4);
+  await reads(/^1\.000 m \(corner of cube – corner of cube\)$/);
+  await page.keyboard.press("m");
+  await page.keyboard.press("m");
+  await page.mouse.click(left + 5, bottom - 4);
+  await page.mouse.click(middle + 3 * scale - 5, bottom - scale / 2 + 3);
+  await reads(/^3\.571 m \(corner of cube – centre of mass of far\)$/);
+  await shot(page, "snap");
+  // The mark moves along: 0.1 m down in the whole time. The corner is the one in front, at -0.5, -0.5, -0.5.
+  await page.keyboard.press("End");
+  await page.waitForTimeout(200);
+  const moved = parseFloat(await ruler.textContent());
+  expect(Math.abs(moved - Math.hypot(3.5, 0.5, 0.4)) < 1e-3, `the distance becomes ${moved} m`);
+  await page.keyboard.press("Home");
+  await page.keyboard.press("m");
+  await page.keyboard.press("m");
+  await page.mouse.click(middle + 1.5 * scale + 5, bottom - scale / 2 - 5);
+  await page.mouse.click(right - 3, bottom - 4);
+  await reads(/\(rail – corner of cube\)$/);
+  const solid = await page_of("tyre.html");
+  await solid.page.keyboard.press("m");
+  const box = await solid.page.locator(".view > canvas").boundingBox();
+  for (let i = 2; i < 19 && !(await solid.page.locator(".measure").textContent()).includes("a node of"); i++)
+    for (let j = 2; j < 19 && !(await solid.page.locator(".measure").textContent()).includes("a node of"); j += 2) await solid.page.mouse.click(box.x + box.width * i / 20, box.y + box.height * j / 20);
+  await solid.page.locator(".measure", { hasText: "a node of" }).waitFor({ timeout: 2000 });
+});
+
 await test("a model that overlaps is shown with what overlaps", async () => {
   writeFileSync(join(folder, "overlap.yaml"), `format: 1
 bodies:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opening and playback of the page: time, bookmark, phone, dark theme, accessibility.
-import { clock, colours, expect, page_of, picture, recorded, run, shot, test, violations } from "./support.mjs";
+import { clock, colours, expect, model, page_of, picture, recorded, run, shot, test, violations } from "./support.mjs";
 
 await test("the saved file opens without network and shows a picture", async () => {
   const { page } = await page_of("all.html");
@@ -32,6 +32,47 @@ await test("the energy drift is that of the summary, in red above a thousandth",
   }
   const [red, green, blue] = colour.coarse.match(/\d+/g).map(Number);
   expect(red > green + 100 && red > blue + 100 && colour.fine !== colour.coarse, `the colours are ${JSON.stringify(colour)}`);
+});
+
+await test("it plays when it is opened, unless a link names a time or less motion is wanted", async () => {
+  const moving = { reducedMotion: "no-preference" }, { page } = await page_of("all.html", moving);
+  await page.getByRole("button", { name: "Pause", exact: true }).waitFor();
+  await page.waitForFunction(() => parseFloat(document.querySelector("output.clock").textContent) > 0.02);
+  for (const [name, options, t] of [["all.html", {}, 0], ["all.html#t=0.4", moving, 0.4]]) {
+    const { page } = await page_of(name, options);
+    await page.waitForTimeout(300);
+    expect(await clock(page) === t && await page.getByRole("button", { name: "Play", exact: true }).isVisible(), `${name} stands at ${await clock(page)}`);
+  }
+});
+
+await test("space plays after a click on any control; a control reached with the keyboard takes it for itself", async () => {
+  const { page } = await page_of("all.html"), playing = () => page.getByRole("button", { name: "Pause", exact: true }).isVisible();
+  await page.getByRole("tab", { name: "Display" }).click();
+  for (const control of [page.getByRole("button", { name: "Loop" }), page.getByLabel("Trails"), page.getByLabel("Time", { exact: true }), page.getByRole("button", { name: "Top" })]) {
+    await control.click();
+    const state = (await control.getAttribute("aria-pressed")) ?? (await control.evaluate((e) => e.checked));
+    for (const wanted of [true, false]) {
+      await page.keyboard.press(" ");
+      expect(await playing() === wanted, `after ${control} space does not ${wanted ? "play" : "pause"}`);
+    }
+    expect(((await control.getAttribute("aria-pressed")) ?? (await control.evaluate((e) => e.checked))) === state, `space presses ${control}, too`);
+  }
+  const trails = page.getByLabel("Trails");
+  await page.keyboard.press("Tab");
+  await trails.focus();
+  await page.keyboard.press(" ");
+  expect(!await trails.isChecked() && !await playing(), "the keyboard cannot switch trails off");
+});
+
+await test("a long title can be read, on a phone as well", async () => {
+  recorded("titled", model.replace("title: Everything", "title: A slider-crank on a bench, driven by a motor"));
+  for (const options of [{}, { viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true }]) {
+    const { page } = await page_of("titled.html", options), title = page.getByRole("heading", { level: 1 });
+    expect(await title.evaluate((e) => e.scrollWidth <= e.clientWidth && e.scrollHeight <= e.clientHeight + 1 && e.clientWidth > 150), "the title is cut");
+    const { x, width, height } = await title.boundingBox();
+    expect(x >= 0 && x + width <= page.viewportSize().width && height < 60, `the title is at ${x}, ${width} wide and ${height} high`);
+    if (options.isMobile) await shot(page, "phone_title");
+  }
 });
 
 await test("it plays, pauses, and starts again at the end", async () => {
@@ -86,8 +127,10 @@ for (const [name, options] of [["wide and light", {}], ["dark", { colorScheme: "
     const { page } = await page_of("all.html", options);
     expect(await colours(page) > 30, "the picture is empty");
     if (options.isMobile) await page.getByRole("button", { name: "Panel" }).click();
-    for (const tab of ["Plot", "Display", "Objects"]) {
+    for (const tab of ["Plot", "Display", "Extremes", "Objects"]) {
       await page.getByRole("tab", { name: tab }).click();
+      if (tab === "Plot") for (let k = 0; k < 2; k++) await page.getByRole("button", { name: "Ledger" }).click();  // two of the same
+      if (tab === "Extremes") await page.locator("table.extremes").nth(2).waitFor();
       const found = await violations(page);
       expect(found.length === 0, found.join(" | "));
     }
@@ -139,6 +182,9 @@ await test("every key of the list does what the list says", async () => {
   await pressed("o"); await page.keyboard.press("o");
   await pressed("h", "a", "g", "i", "a", "t", "c", "v");
   await page.keyboard.press("v");
+  await page.keyboard.press("0");
+  await pressed("z");
+  await page.keyboard.press("0");
   await press("f"); await page.locator(".details").getByRole("button", { name: "Follow" }).waitFor();
   const still = await picture(page);
   await page.keyboard.press("End");
