@@ -3,7 +3,7 @@
 # errors, and all links are followed. The theory goes into theory.pdf, too, where there is a Chromium. Sphinx goes into a
 # virtual environment under build/; where that cannot be had, it says so and ends with 77.
 #
-#   scripts/docs.sh                    with the runs of some examples, to play, where the program is built
+#   scripts/docs.sh                    with the runs of all examples, to play, where the program is built
 #   POLHODE=path/to/polhode scripts/docs.sh
 #   LIVE="knee stack" scripts/docs.sh  these examples are run; LIVE= none
 #   scripts/docs.sh --version 0.2      as build/docs/site/0.2, with a choice of all versions there and a list of them, index.html
@@ -57,7 +57,7 @@ prepare
   "$python" -m pip install --quiet --disable-pip-version-check -r docs/site/requirements.txt || skip "the packages of docs/site/requirements.txt cannot be fetched"
 
 polhode=${POLHODE:-build/release/apps/polhode/polhode}
-live=${LIVE-"crank_rocker double_pendulum heavy_top knee n_four_bar newtons_cradle suspension_corner tumbling_body"}
+live=${LIVE-$(cd examples && ls */model.yaml | cut -d/ -f1)}
 options=()
 if [ -x "$polhode" ] && [ -n "$live" ]; then
   "$python" docs/site/run_live.py "$polhode" build/docs/live $live

@@ -17,6 +17,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cpp_pages  # noqa: E402
+import gallery_topics  # noqa: E402
 import python_pages  # noqa: E402
 import source_pages  # noqa: E402
 import tables  # noqa: E402
@@ -162,12 +163,17 @@ class Site:
     def gallery(self, live):
         rows = re.findall(r"^\| \[(\w+)\]\(\w+\) \| ([^|]+) \| ([^|]+) \|$", (ROOT / "examples/README.md").read_text(), re.M)
         text = ["# Gallery", "", "Every example is a model to read, to run and to change, and has a check against something known, which the tests run.",
-                "*Live* ones play in the browser, without network.", "", "::::{container} gallery", ""]
+                "*Live* plays its run in the browser, without network.", "", '<div id="gallery-filter"></div>', "", "::::{container} gallery", ""]
         for name, shows, compared in rows:
             title = (ROOT / f"examples/{name}/README.md").read_text().split("\n")[0].lstrip("# ")
-            playing = f' <a href="live/{name}.html">Live</a>' if name in live else ""
-            text += [":::{container} card", f"[![{title}](examples/{name}/picture.png)](examples/{name}/index.md)", "",
-                     f"**[{title}](examples/{name}/index.md)**: {shows.strip()}.", "", f"Compared with: {compared.strip()}.{playing}", ":::", ""]
+            playing = f' <a class="play" href="live/{name}.html">Live</a>' if name in live else ""
+            topics = gallery_topics.topics((ROOT / f"examples/{name}/model.yaml").read_text())
+            if not (ROOT / f"docs/images/gallery/{name}.webp").exists():
+                sys.exit(f"assemble.py: the example '{name}' has no docs/images/gallery/{name}.webp. Make it: tools/render_gallery.py {name}")
+            self.copy(f"docs/images/gallery/{name}.webp", f"images/gallery/{name}.webp")
+            text += [":::{container} card", f"[![{title}](images/gallery/{name}.webp)](examples/{name}/index.md)", "",
+                     f"**[{title}](examples/{name}/index.md)**: {shows.strip()}.{playing}", "", f"Compared with: {compared.strip()}.", "",
+                     f'<p class="topics">{", ".join(topics)}</p>', ":::", ""]
         text += ["::::", "", "```{toctree}", ":hidden:", "", *[f"examples/{name}/index" for name, _, _ in rows], "```", ""]
         self.write("gallery.md", "\n".join(text))
 

@@ -31,7 +31,7 @@ templates_path = ["templates"]
 exclude_patterns = ["extra", "static"]
 html_css_files = ["site.css"]
 # Other versions lie beside this one: scripts/docs.sh --version.
-html_js_files = ["versions_menu.js"] if os.environ.get("POLHODE_DOCS_VERSION") else []
+html_js_files = ["gallery.js", *(["versions_menu.js"] if os.environ.get("POLHODE_DOCS_VERSION") else [])]
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sphinx = False

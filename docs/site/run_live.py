@@ -17,9 +17,12 @@ def main(polhode, target, names):
     work.mkdir(parents=True, exist_ok=True)
     polhode = str(pathlib.Path(polhode).resolve())
     for name in names:
-        subprocess.run([polhode, "run", str(ROOT / f"examples/{name}/model.yaml"), "-o", str(work / f"{name}.results"), "--quiet"], check=True)
+        # Results are named after the example, and lie beside the files that its model names.
+        shutil.rmtree(work / name, ignore_errors=True)
+        shutil.copytree(ROOT / "examples" / name, work / name, ignore=shutil.ignore_patterns("*.results"))
+        subprocess.run([polhode, "run", str(work / name / "model.yaml"), "-o", str(work / name / f"{name}.results"), "--quiet"], check=True)
     archive = work / "live.zip"
-    subprocess.run([polhode, "view", *[str(work / f"{name}.results") for name in names], "--zip", str(archive), "--frames", FRAMES, "--quiet"], check=True)
+    subprocess.run([polhode, "view", *[str(work / name / f"{name}.results") for name in names], "--zip", str(archive), "--frames", FRAMES, "--quiet"], check=True)
     with zipfile.ZipFile(archive) as pages:
         pages.extractall(target)
 

@@ -81,9 +81,35 @@ await open("reference/joints.html", {}, async (page) => {
 // Contents of the site: five quick starts, every example with its picture, help, terms of other programs, interfaces, the theory as one file.
 const examples = join(dirname(fileURLToPath(import.meta.url)), "../../examples"), all = readdirSync(examples).filter((name) => existsSync(join(examples, name, "model.yaml")));
 await open("gallery.html", {}, async (page) => {
-  const shown = await page.evaluate(() => [...document.querySelectorAll("article a")].filter((a) => a.querySelector("img")?.naturalWidth > 0 || a.parentElement.querySelector("img")).map((a) => a.getAttribute("href")));
-  const missing = all.filter((name) => !shown.some((link) => link?.includes(`examples/${name}/`)));
-  expect(all.length > 30 && missing.length === 0, `the gallery has no picture of ${missing}`);
+  await page.evaluate(() => Promise.all([...document.querySelectorAll(".card img")].map((img) => { img.loading = "eager"; return img.decode(); })));
+  const cards = await page.locator(".gallery .card").evaluateAll((all) => all.map((card) => ({ link: card.querySelector("a:has(img)")?.getAttribute("href"), live: card.querySelector("a.play")?.getAttribute("href"), topics: card.querySelector(".topics")?.textContent,
+    picture: card.querySelector("img").naturalWidth === 480 && card.querySelector("img").src.split("/").at(-1) })));
+  const missing = all.filter((name) => !cards.some((card) => card.link?.includes(`examples/${name}/`) && card.picture === `${name}.webp` && card.topics));
+  expect(all.length > 30 && missing.length === 0 && cards.length === all.length, `the gallery of ${cards.length} cards has no picture or topics of ${missing}`);
+  if (existsSync(join(site, "live"))) {
+    const wanted = process.env.LIVE === undefined ? all : process.env.LIVE.split(" "), dead = wanted.filter((name) => !cards.some((card) => card.live === `live/${name}.html`) || !existsSync(join(site, `live/${name}.html`)));
+    expect(dead.length === 0, `the gallery does not play ${dead}`);
+  }
+  const shown = async () => page.locator(".gallery .card:visible").evaluateAll((found) => found.map((card) => card.querySelector("a:has(img)").getAttribute("href").split("/")[1]));
+  const field = page.locator("#gallery-filter input"), topic = (name) => page.locator(`#gallery-filter button[data-topic="${name}"]`);
+  await field.fill("gears");
+  const gears = await shown();
+  expect(["gear_pair", "planetary_gearbox"].every((name) => gears.includes(name)) && gears.length < 6, `'gears' leaves ${gears}`);
+  await field.fill("");
+  await topic("solids").click();
+  const solids = await shown();
+  expect(solids.includes("knee") && solids.includes("tyre_on_kerb") && !solids.includes("stack") && solids.length < 15, `the topic solids leaves ${solids}`);
+  await topic("contact").click();
+  const both = await shown();
+  expect(both.includes("tyre_on_kerb") && !both.includes("knee") && both.length > 1 && await topic("contact").getAttribute("aria-pressed") === "true", `solids with contact are ${both}`);
+  expect((await page.locator("#gallery-filter [role=status]").innerText()).startsWith(`${both.length} of ${all.length}`), "the number of examples is not that shown");
+  const address = page.url();
+  await page.goto("about:blank");
+  await page.goto(address);
+  expect(String(await shown()) === String(both), "the filter is not in the address");
+  await topic("solids").click();
+  await topic("contact").click();
+  expect((await shown()).length === all.length, "examples stay hidden without a filter");
 });
 for (const path of [...["mechanism", "spacecraft", "tissue", "robot", "classroom"].map((name) => `quick_start/${name}`), "how_to/step_does_not_converge", "how_to/is_my_result_right", "how_to/coming_from_another_program",
   "reference/conventions", "reference/model_file", "api/python", "api/cpp/index", "validation", "benchmarks"]) expect(existsSync(join(site, `${path}.html`)), `there is no ${path}.html`);
