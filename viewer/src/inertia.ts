@@ -22,9 +22,8 @@ function reaches(scene: Scene): number[] {
  */
 export function sizeInertia(scene: Scene, bodies: Bodies, all: Box3): boolean {
   const size = all.isEmpty() ? 0 : all.getSize(new Vector3()).length(), boxes = bodies.inertiaBoxes();
-  if (boxes.some(({ diagonal }) => size < 0.5 * diagonal) && boxes.length === 1) return true;
-  if (size === 0) return boxes.length > 0;
   const far = reaches(scene), shapes = shaped(scene);
+  if (size === 0 || (!shapes && boxes.length === 1 && size < 0.5 * boxes[0].diagonal)) return boxes.length > 0;
   for (const { body, diagonal, slender, local } of boxes) {
     const reach = far[body], link = !shapes && slender && diagonal < 2.4 * reach;
     if (!link) local.scale(new Vector3().setScalar(Math.min(1, (reach > 0 ? Math.min(0.8 * reach, 0.12 * size) : 0.08 * size) / diagonal)));

@@ -215,7 +215,7 @@ async function start(app: HTMLElement): Promise<void> {
     view.stage.dirty = true;
   });
 
-  if (!filmWanted()) for (const names of firstPlots(probes, innerWidth <= 720 ? 1 : 2)) plots.openPlot(names);
+  if (!filmWanted()) for (const names of firstPlots(probes, holder.clientWidth < 540 ? 1 : 2)) plots.openPlot(names);
   theme(dark);
   const bookmarked = follow(location.hash, view, player);
   if (bookmarked && objectsOf(scene).some((o) => o.kind === bookmarked.kind && o.index === bookmarked.index)) choose(bookmarked);

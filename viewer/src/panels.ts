@@ -86,7 +86,7 @@ export class ObjectPanel {
     for (const name of quantitiesOf(this.scene, choice.kind, object.name)) {
       const series = await seriesOf(this.scene, name);
       if (series.length === 0 || this.shown !== choice) continue;
-      const { unit, factor } = prefixed(series[0].unit, largest(series.map((s) => s.values)));
+      const units = [...new Set(series.map((s) => s.unit))], { unit, factor } = units.length === 1 ? prefixed(units[0], largest(series.map((s) => s.values))) : { unit: units.join(", "), factor: 1 };
       const short = name.slice(name.lastIndexOf(".") + 1).replaceAll("_", " "), cell = h("td", { class: "number" });
       this.cells.push({ cell, at: (f, part) => series.map((s) => figure(factor * valuesAt(s.values as unknown as Float32Array, 1, 0, 1, f, part)[0])).join("  ") });
       rows.push(h("tr", {}, h("th", { scope: "row" }, short), cell, h("td", { class: "faint" }, unit === "-" ? "" : unit),

@@ -38,11 +38,13 @@ export class Plot {
     const modes = h("select", { "aria-label": "Kind of plot", onchange: () => { this.mode = modes.value as Mode; this.draw(); } },
       ...(["time", "spectrum", "phase", "stacked", ...(other ? ["difference"] : [])] as Mode[]).map((m) => h("option", { value: m, selected: m === mode }, m)));
     const button = (label: string, title: string, act: () => void) => h("button", { type: "button", title, "aria-label": /\w/.test(label) ? `${label}: ${title}` : title, onclick: act }, label);
+    const closing = button("✕", "Close this plot", () => this.close(this));
+    closing.classList.add("close");
     this.element = h("section", { class: "plot", "aria-label": this.title },
       h("div", { class: "plotbar" }, this.legend, modes, button("unit", "Other units", () => { this.otherUnits = !this.otherUnits; this.draw(); }),
         button("1:1", "Whole range", () => this.draw()), button("CSV", "Save as CSV", () => save("plot.csv", this.csv(), "text/csv")),
         button("SVG", "Save as SVG", () => save("plot.svg", this.svg(), "image/svg+xml")), button("PNG", "Save as PNG", () => this.png()),
-        button("✕", "Close this plot", () => this.close(this))), this.field);
+        closing), this.field);
     new ResizeObserver(() => this.fit()).observe(this.field);
     void this.load();
   }

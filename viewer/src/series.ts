@@ -7,6 +7,9 @@ export interface Series { name: string; unit: string; values: Float64Array }
 const kComponents: Record<number, string[]> = { 3: ["x", "y", "z"], 4: ["w", "x", "y", "z"], 6: ["xx", "yy", "zz", "xy", "yz", "xz"] };
 const kBody = ["position", "velocity", "angular_velocity", "orientation"];
 const kJoint = ["force", "moment", "coordinates", "rates"];
+/** Free coordinates of joints: translations and rotations, in their order. */
+export const kFreedoms: Record<string, string> = { revolute: "R", prismatic: "T", cylindrical: "TR", universal: "RR", constant_velocity: "RR", spherical: "RRR", planar: "TTR", point_in_plane: "TTRRR",
+  point_on_line: "TRRR", parallel_axes: "TTTR" };
 const kContact = ["gap", "normal_force", "force", "friction", "point", "points", "status", "impulse", "energy_lost"];
 
 function column(data: Float32Array, width: number, frames: number, at: number): Float64Array {
@@ -25,7 +28,8 @@ function magnitude(data: Float32Array, width: number, frames: number, at: number
   return values;
 }
 
-interface Found { path: string; at: number; size: number; unit: string; labels?: string[] }
+/** `units`: of the components, if they differ. */
+interface Found { path: string; at: number; size: number; unit: string; units?: string[]; labels?: string[] }
 
 /** Place of a quantity in its packed channel. `rest` is the component, if one is named. */
 function find(scene: Scene, name: string): { found: Found; rest: string; head: string } | null {
@@ -55,8 +59,9 @@ function find(scene: Scene, name: string): { found: Found; rest: string; head: s
       return packed("joints", joint.index, m.joints.length, joint.quantity, joint.rest);
     const entry = scene.entry(`packed/joints/${joint.quantity}`), own = m.joints[joint.index];
     if (!entry || !own.count) return null;
-    const one = { revolute: "rad", prismatic: "m" }[own.type ?? ""] ?? "rad or m", unit = joint.quantity === "coordinates" ? one : one.replace(/rad|m/g, "$&/s");
-    return { found: { path: entry.path, at: own.first ?? 0, size: own.count, unit, labels: Array.from({ length: own.count }, (_, i) => `${i}`) },
+    const freedoms = kFreedoms[own.type ?? ""] ?? "", per = joint.quantity === "coordinates" ? "" : "/s", unit = `rad${per} or m${per}`;
+    const units = freedoms.length === own.count ? [...freedoms].map((f) => (f === "T" ? "m" : "rad") + per) : undefined;
+    return { found: { path: entry.path, at: own.first ?? 0, size: own.count, unit: units?.every((u) => u === units[0]) ? units[0] : unit, units, labels: Array.from({ length: own.count }, (_, i) => `${i}`) },
       rest: joint.rest, head: `joints.${own.name}.${joint.quantity}` };
   }
   const contact = split("contacts", m.contacts, kContact);
@@ -96,7 +101,7 @@ export async function seriesOf(scene: Scene, name: string): Promise<Series[]> {
   const labels = found.labels ?? kComponents[found.size] ?? Array.from({ length: found.size }, (_, i) => `${i}`);
   if (rest === "size") return [{ name: `${head}.size`, unit: found.unit, values: magnitude(data, width, frames, found.at, found.size) }];
   const wanted = rest ? [labels.indexOf(rest)] : labels.map((_, i) => i).slice(0, 8);
-  return wanted.filter((k) => k >= 0).map((k) => ({ name: `${head}.${labels[k]}`, unit: found.unit, values: column(data, width, frames, found.at + k) }));
+  return wanted.filter((k) => k >= 0).map((k) => ({ name: `${head}.${labels[k]}`, unit: found.units?.[k] ?? found.unit, values: column(data, width, frames, found.at + k) }));
 }
 
 /** Series of another recording at times of this one: linear between its frames, not a number before and after them. */

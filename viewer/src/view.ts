@@ -89,7 +89,7 @@ export class View {
     this.lines.box(all);
     this.poses.set(before);
     for (let j = 0; j < this.scene.manifest.joints.length; j++) all.expandByPoint(this.joints.point(j, new Vector3()));
-    for (const { a, b, Za, Zb } of this.scene.manifest.loads) if (Za && Zb) for (const [body, Z] of [[a, Za], [b, Zb]] as const) all.expandByPoint(this.poses.point(body ?? -1, Z, new Vector3()));
+    for (const { a, b, Za, Zb, coil, damper } of this.scene.manifest.loads) if (Za && Zb && (coil || damper)) for (const [body, Z] of [[a, Za], [b, Zb]] as const) all.expandByPoint(this.poses.point(body ?? -1, Z, new Vector3()));
     if (!inertia && this.bodies.inertiaBoxes().length > 0) return all.isEmpty() ? all : all.expandByScalar(0.04 * all.getSize(new Vector3()).length());
     if (all.isEmpty()) all.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
     return all;

@@ -94,4 +94,8 @@ analysis: {duration: 0.1 s, step: 0.01 s}
   const [rod, centre] = await camera(page);
   expect(distance(centre, [0.45, 0, 0]) < 1e-3 && distance(rod, centre) > 0.4, `${rod} looks at ${centre}`);
   await shot(page, "links");
+  // Beside shapes boxes of inertia count not at all, not even their centres.
+  recorded("beside", "format: 1\nbodies: {ball: {fixed: true, shape: {sphere: 0.1}}, lump: {mass: 1, inertia: [1, 1, 1], position: [5, 0, 0]}}\nanalysis: {duration: 0.1 s, step: 0.01 s}\n");
+  const beside = await page_of("beside.html"), [near, ball] = await camera(beside.page);
+  expect(distance(near, ball) < 1 && distance(ball, [0, 0, 0]) < 1e-3, `${near} looks at ${ball}`);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is under and beside the picture at first sight: plots of the probes, their layout and units, the table of extremes.
-import { existsSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { build } from "esbuild";
@@ -79,6 +79,25 @@ await test("every unit has an axis of its own, with SI prefixes, in the page and
   await shot(page, "units");
   // Names of all curves are there, in full.
   for (const list of await page.locator(".series").all()) expect(await list.evaluate((e) => e.scrollHeight <= e.clientHeight + 1 && e.scrollWidth <= e.clientWidth + 1), "a legend is cut");
+});
+
+await test("coordinates of joints have the units of their freedoms", async () => {
+  const { kFreedoms } = await source("series"), page_of_joints = readFileSync(join(root, "docs/reference/joints.md"), "utf8");
+  const listed = [...page_of_joints.matchAll(/^\| `(\w+)` \| ([TR][xyz](?: [TR][xyz])*) \|/gm)].map(([, kind, freedoms]) => [kind, freedoms.replace(/[xyz ]/g, "")]);
+  expect(listed.length > 8 && JSON.stringify(Object.entries(kFreedoms).sort()) === JSON.stringify(listed.sort()), `${JSON.stringify(kFreedoms)}, not ${listed.join(" ")}`);
+  recorded("sleeve", `format: 1
+bodies: {nut: {mass: 1, inertia: [1, 1, 1]}}
+joints: {sleeve: {type: cylindrical, bodies: [ground, nut], at: [0, 0, 0], axis: x}}
+loads: {thread: {type: screw, joint: sleeve, pitch: 0.3}, drive: {type: rotary_motor, joint: sleeve, speed: 2}}
+analysis: {duration: 1 s, step: 2 ms}
+output: {every: 20 ms, probes: {sleeve: {joint: sleeve}}}
+`);
+  const { page } = await page_of("sleeve.html");
+  await plotted(page, 1);
+  const found = await names(page), last = (await saved(page, "CSV")).trim().split("\n").at(-1).split(",").map(Number);
+  expect(JSON.stringify(found) === JSON.stringify([["joints.sleeve.coordinates.0 [mm]", "joints.sleeve.coordinates.1 [rad]"]]), JSON.stringify(found));
+  expect(Math.abs(Math.abs(last[1]) - 0.3 / Math.PI) < 1e-4 && Math.abs(last[2] - 2) < 1e-3, `after a second: ${last}`);
+  expect(await page.locator(".u-axis").count() === 3, "one axis for angle and distance");
 });
 
 await test("plots are resized with the mouse and the keyboard, and stacked", async () => {
