@@ -111,14 +111,14 @@ await open("gallery.html", {}, async (page) => {
   await topic("contact").click();
   expect((await shown()).length === all.length, "examples stay hidden without a filter");
 });
-for (const path of [...["mechanism", "spacecraft", "tissue", "robot", "classroom"].map((name) => `quick_start/${name}`), "how_to/step_does_not_converge", "how_to/is_my_result_right", "how_to/coming_from_another_program",
+for (const path of [...["mechanism", "spacecraft", "tissue", "robot", "classroom"].map((name) => `quick_start/${name}`), "how_to/step_does_not_converge", "how_to/is_my_result_right", "how_to/coming_from_another_program", "how_to/what_is_not_there",
   "reference/conventions", "reference/model_file", "api/python", "api/cpp/index", "validation", "benchmarks"]) expect(existsSync(join(site, `${path}.html`)), `there is no ${path}.html`);
 const terms = readFileSync(join(site, "how_to/coming_from_another_program.html"), "utf8");
-for (const program of ["FEBio", "Chrono", "MuJoCo", "Adams", "Exudyn"]) expect(terms.includes(program), `terms of ${program} are missing`);
+for (const program of ["FEBio", "Chrono", "MuJoCo", "Adams", "Exudyn", "Simscape Multibody", "OpenSim", "Drake", "Pinocchio", "Basilisk"]) expect(new RegExp(`<h2>${program}<a`).test(terms), `terms of ${program} are missing`);
 expect(readFileSync(join(site, "theory.pdf")).subarray(0, 5).toString() === "%PDF-", "the theory is no PDF");
 // The search: the page that is meant comes first, with excerpts that show the words and links to their sections.
 for (const [words, at, place] of [["joint friction", "reference/joints.html", "friction-and-limits"], ["bushing", "reference/connectors.html", "bushings"], ["step does not converge", "how_to/step_does_not_converge.html"],
-  ["rotary_motor", "reference/model_file.html", "load-rotary-motor"], ["muscle", "reference/beams.html", "muscles"], ["units", "reference/conventions.html", "units"], ["planetary gears", "examples/planetary_gearbox/index.html"]])
+  ["rotary_motor", "reference/model_file.html", "load-rotary-motor"], ["muscle", "reference/beams.html", "muscles"], ["units", "reference/conventions.html", "units"], ["osim", "how_to/what_is_not_there.html", "files"], ["reactionWheelStateEffector", "how_to/coming_from_another_program.html", "basilisk"], ["planetary gears", "examples/planetary_gearbox/index.html"]])
   await open(`search.html?q=${encodeURIComponent(words)}`, {}, async (page) => {
     await page.locator("#search-results li a").first().waitFor();
     const first = page.locator("#search-results > li").first(), links = await first.locator("a").evaluateAll((all) => all.map((a) => a.getAttribute("href")));
