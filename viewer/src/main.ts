@@ -173,6 +173,11 @@ async function start(app: HTMLElement): Promise<void> {
     if (!ruler.hidden) ruler.textContent = measured ? `${quantity(measured.distance, "m")}${Number.isFinite(measured.angle) ? `, ${figure(measured.angle * 180 / Math.PI)}°` : ""}${measured.between ? ` (${measured.between})` : ""}` : "Click two points, or three for an angle.";
   };
   player.onchange(tick);
+  let turning = 0;  // a timer, as each step of a wheel is a movement of its own
+  const moving = (): void => view.stage.setMoving(player.playing || turning !== 0);
+  player.onchange(moving);
+  view.stage.controls.addEventListener("start", () => { clearTimeout(turning); turning = -1; moving(); });
+  view.stage.controls.addEventListener("end", () => { turning = window.setTimeout(() => { turning = 0; moving(); }, 300); });
 
   let down = [0, 0];
   canvas.addEventListener("pointerdown", (e) => { down = [e.clientX, e.clientY]; });

@@ -15,6 +15,9 @@ export const kLight = { background: "#f2f5f7", grid: "#c3ccd4", line: "#22303c" 
 const kNone = "This browser cannot draw in 3D: WebGL 2 is off or not available. Turn on hardware acceleration, or open the page in another browser. Plots and values are shown without it.";
 const kLost = "The browser has stopped drawing in 3D. The picture returns when the browser can draw again; if it does not, reload the page.";
 
+/** Pixels of a picture for one of the window, in each direction. */
+const kRatio = software ? 1 : Math.min(devicePixelRatio, 2);
+
 /** Renderer, lights, ground grid, axes and cameras. */
 export class Stage {
   readonly world = new World();
@@ -34,6 +37,8 @@ export class Stage {
   looking: Vector3 | null = null;
   size = 1;
   dirty = true;
+  private moving = false;
+  private part = 1;  // of kRatio, while something moves
   private drawn = false;  // a picture whose size changes is drawn again at once: it would be empty until the next one
   /** Size of the pictures of a film; null: that of the window. */
   fixedSize: [number, number] | null = null;
@@ -64,7 +69,7 @@ export class Stage {
     if (!drawable) return null;
     try {
       const renderer = new WebGLRenderer({ canvas: this.canvas, antialias: !software, preserveDrawingBuffer: true });
-      renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
+      renderer.setPixelRatio(kRatio);
       renderer.debug.checkShaderErrors = false;  // to ask for them waits until all are compiled
       renderer.shadowMap.enabled = true;  // costs nothing while no light casts any
       renderer.shadowMap.type = PCFShadowMap;
@@ -226,9 +231,17 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Reduces the rendering effort on slow machines: fewer pixels. */
+  /** Reduces the rendering effort on slow machines: fewer pixels while something moves. */
   lighten(): void {
-    if (this.renderer && this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
+    this.part = Math.max(0.5, 0.7 * this.part);
+    this.setMoving(this.moving);
+  }
+  /** Whether the recording plays or the user turns the camera: still pictures have all pixels, whatever they take. */
+  setMoving(on: boolean): void {
+    this.moving = on;
+    const ratio = kRatio * (on ? this.part : 1);
+    if (!this.renderer || this.fixedSize || this.renderer.getPixelRatio() === ratio) return;
+    this.renderer.setPixelRatio(ratio);
     this.resize();
   }
 

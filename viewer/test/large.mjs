@@ -22,6 +22,8 @@ async function measured(name, pictures = 8) {
   const count = await drawn() - from, each = 1000 * (await spent() - busy) / count, script = 1000 * (await spent("renderer") - alone) / count;
   const calls = (await page.evaluate(() => window.drawCalls) - issued) / count;
   await page.keyboard.press(" ");
+  // A picture that stands still has all pixels, whatever playing has been reduced to.
+  await page.waitForFunction(() => { const canvas = document.querySelector(".view > canvas"); return canvas.width === canvas.clientWidth && canvas.height === canvas.clientHeight; }, null, { timeout: 10000 });
   const own = (await processes()).filter(({ type, id }) => type === "renderer" && !pages.includes(id)).map(({ id }) => `/proc/${id}/status`).filter((file) => existsSync(file));
   const most = Math.max(...own.map((file) => Number(readFileSync(file, "utf8").match(/VmHWM:\s+(\d+)/)[1]) / 1024));
   console.log(`        ${name}: ${loading.toFixed(2)} s of processors until it is ready, ${each.toFixed(0)} ms and ${calls.toFixed(0)} calls for a picture (${script.toFixed(1)} ms by the page itself), ${most.toFixed(0)} MB at most`);
