@@ -155,13 +155,12 @@ export class Plot {
         ...(s.other ? { dash: [6, 4] } : {}), ...(this.mode === "stacked" ? { fill: kColours[s.ink % kColours.length] + "55" } : {}), ...(phase ? { facets: [{ scale: "x", auto: true }, { scale: s.scale, auto: true }], paths: path } : {}) }))],
       // A layer is filled down to the one below it, the lowest down to zero.
       ...(this.mode === "stacked" ? { bands: curves.slice(1).map((_, i): uPlot.Band => ({ series: [i + 2, i + 1] })) } : {}),
-      hooks: { draw: [(u) => this.cursor(u)], ready: [(u) => this.listen(u)] },
+      hooks: { draw: [(u) => { this.cursor(u); this.place(u); }], ready: [(u) => this.listen(u)] },
     };
     const data = phase ? [null, ...curves.map((s) => [x, s.values])] : [x, ...curves.map((s) => s.values)];
     if (curves.length > 0 && x.length > 0) this.plot = new uPlot(options, data as unknown as uPlot.AlignedData, this.field);
     this.now.remove();
     if (this.plot && !phase) this.plot.over.append(this.now);
-    this.tick();
   }
 
   private listen(u: uPlot): void {
@@ -205,7 +204,9 @@ export class Plot {
   tick(): void {
     const u = this.plot;
     if (!u) return;
-    if (this.mode === "phase") { u.redraw(false); return; }
+    if (this.mode === "phase") u.redraw(false); else this.place(u);
+  }
+  private place(u: uPlot): void {
     const at = u.valToPos(this.clock.time(), "x");
     this.now.hidden = this.mode === "spectrum" || !(at >= 0 && at <= u.over.clientWidth);
     this.now.style.transform = `translateX(${at}px)`;
@@ -214,7 +215,6 @@ export class Plot {
   private fit(): void {
     const width = this.field.clientWidth, height = this.field.clientHeight;
     if (this.plot && width > 60 && height > 60) this.plot.setSize({ width, height });
-    this.tick();
   }
 
   csv(): string {

@@ -68,6 +68,8 @@ await test("plots and time move one another; they save as CSV, SVG and PNG", asy
 await test("a drag zooms a plot; two clicks, or a button, show all of it again", async () => {
   const page = await plotted("all.html", "bodies.arm.position.z");
   const box = await page.locator(".plot .u-over").boundingBox(), at = (part) => [box.x + part * box.width, box.y + box.height / 2];
+  /** The line of the present time, as a part of the plot's width; null while it is hidden. */
+  const line = () => page.locator(".plot .now").evaluate((e) => { const over = e.parentElement.getBoundingClientRect(), { left, width } = e.getBoundingClientRect(); return e.hidden ? null : (left + width / 2 - over.left) / over.width; });
   const all = async () => { const [a, b] = await range(page); within(a, 0, 0.01, "the start of all"); within(b, 1, 0.01, "the end of all"); };
   const zoom = async () => {
     await page.mouse.move(...at(0.25));
@@ -81,13 +83,17 @@ await test("a drag zooms a plot; two clicks, or a button, show all of it again",
   };
   await all();
   const t = await clock(page);
+  within(await line(), t, 0.01, "the line before anything moves");
   await zoom();
+  expect(await line() === null, "the line of a time that is not in the plot is shown");
   expect(await clock(page) === t, "a drag moves the time");
   // The time of a click is that of the visible range, and the curve is drawn over it.
   await page.mouse.click(...at(0.6));
   within(await clock(page), 0.4, 0.01, "the time");
+  within(await line(), 0.6, 0.02, "the line in a part");
   await page.mouse.dblclick(...at(0.5));
   await all();
+  within(await line(), await clock(page), 0.01, "the line in the whole range");
   await zoom();
   await page.getByRole("button", { name: "Whole range" }).click();
   await all();
