@@ -24,35 +24,41 @@ from ._native import version as __version__
 
 if TYPE_CHECKING:
     from . import rotations
+    from ._derivatives import Uncertainty
+    from ._design import Minimum, minimize
     from ._equations import StepEquations, step_equations
+    from ._fit import Experiment, Fit, fit
     from ._gradient import Gradient, gradient
     from ._linear import StateSpace, inverse_dynamics, linearize
     from ._modes import Matrices, Mode, Modes, matrices, modes, spin_modes
     from ._result import Result, open
     from ._run import run
     from ._simulation import Simulation, Step
-    from ._sweep import Fit, fit, sweep
+    from ._sweep import sweep
 
 # Loaded at first use: NumPy takes longer to import than everything else.
 _LATER = {
+    "_derivatives": ["Uncertainty"],
+    "_design": ["Minimum", "minimize"],
     "_equations": ["StepEquations", "step_equations"],
+    "_fit": ["Experiment", "Fit", "fit"],
     "_gradient": ["Gradient", "gradient"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes", "spin_modes"],
     "_result": ["Result", "open"],
     "_run": ["run"],
     "_simulation": ["Simulation", "Step"],
-    "_sweep": ["Fit", "fit", "sweep"],
+    "_sweep": ["sweep"],
 }
 for _error in (Fault, ModelError, NotConverged):
     _error.__module__ = __name__  # public names in tracebacks
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
-    "BodyReading", "Fault", "Fit", "Gradient", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged",
-    "Result", "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations", "__version__", "fit", "from_text",
-    "gradient", "inverse_dynamics", "linearize", "load", "matrices", "modes", "open", "rotations", "run", "spin_modes",
-    "step_equations", "sweep",
+    "BodyReading", "Experiment", "Fault", "Fit", "Gradient", "Matrices", "Minimum", "Mode", "Model", "ModelError",
+    "Modes", "NotConverged", "Result", "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations",
+    "Uncertainty", "__version__", "fit", "from_text", "gradient", "inverse_dynamics", "linearize", "load", "matrices",
+    "minimize", "modes", "open", "rotations", "run", "spin_modes", "step_equations", "sweep",
 ]
 
 

@@ -7,7 +7,7 @@ import warnings
 from typing import Any, NamedTuple, Optional, Sequence, Union, overload
 
 from . import _native
-from ._errors import fault
+from ._errors import ModelError, NotConverged, fault
 from ._model import Model, Overrides, overrides_list
 
 
@@ -37,23 +37,85 @@ class Gradient(NamedTuple):
         return "\n".join(lines)
 
 
-def tangents(model: Model, channels: "Sequence[str]", times: Any, wrt: "Sequence[str]", overrides: Overrides) -> Any:
-    """Derivatives of channels at times, step ends, by parameters: an array (times, channels, parameters)."""
+class Source(NamedTuple):
+    """What a run was computed from."""
+
+    text: str  #: Of the model file.
+    name: str  #: Of the model file.
+    overrides: "list[str]"  #: As the command line takes them.
+    called: "tuple[str, str]" = ("", "")  #: Load with a callable, and that; derivatives are refused.
+
+    def known(self) -> "Source":
+        """Itself, if no load is a callable. Raises ModelError otherwise."""
+        load, function = self.called
+        if load:
+            raise fault(f"loads.{load}", f"{function} has no known derivative", "Write an expression of t instead")
+        return self
+
+
+def source_of(model: Model, overrides: Overrides) -> Source:
+    """The source of runs of a model as it is now."""
+    text, name, in_file = model._source()
+    calls = [] if in_file else model._calls()[1]
+    called = (calls[0].load, repr(calls[0].function)) if calls else ("", "")
+    return Source(text, name, overrides_list(overrides), called)
+
+
+def _differentiate(source: Source, *request: Any) -> "tuple[list[Any], list[Any]]":
+    """Parameters and outcomes of the engine's gradients. Raises NotConverged for a run that does not end."""
+    text, name, overrides, _ = source.known()
+    try:
+        parameters, found = _native.gradient(text, name, overrides, *request)
+    except ModelError:
+        raise
+    except RuntimeError as error:
+        raise NotConverged(str(error)) from None
+    return parameters, found
+
+
+def gradients(source: Source, of: "list[str]", wrt: "list[str]", forward: Optional[bool],
+              error_bars: bool) -> "list[Gradient]":
+    """Gradients of outcomes of a run."""
+    by_tangents = len(of) > len(wrt) if forward is None else forward
+    parameters, found = _differentiate(source, of, wrt, by_tangents, error_bars)
+    results = []
+    for outcome, value, unit, time, by, bars, growth, check, doubts in found:
+        for doubt in doubts:
+            warnings.warn(doubt, stacklevel=3)
+        slopes = {path: slope for (path, _, _), slope in zip(parameters, by)}
+        elasticity = {path: size / value * slopes[path] for path, size, _ in parameters if size and value}
+        results.append(Gradient(outcome, value, unit, time, slopes, dict(zip(slopes, bars)), elasticity, growth, check))
+    return results
+
+
+def _at_times(channels: "Sequence[str]", times: Any) -> "list[str]":
+    """Outcomes of channels at times, those of one time together."""
     import numpy as np
 
-    text, name = _text_of(model)
-    of = [f"{channel}@{time!r}" for time in np.asarray(times).tolist() for channel in channels]
-    _, found = _native.gradient(text, name, overrides_list(overrides), of, list(wrt), True, False, True)
-    return np.array([outcome[4] for outcome in found]).reshape(len(times), len(channels), len(wrt))
+    return [f"{channel}@{time!r}" for time in np.asarray(times, dtype=float).tolist() for channel in channels]
 
 
-def _text_of(model: Model) -> "tuple[str, str]":
-    """Text and name of a model without callables."""
-    for call in model._calls()[1]:
-        raise fault(f"loads.{call.load}", f"{call.function!r} has no known derivative",
-                    "Write an expression of t instead")
-    text, name, _ = model._source()
-    return text, name
+def tangents(source: Source, channels: "Sequence[str]", times: Any, wrt: "Sequence[str]") -> "tuple[Any, Any]":
+    """Values of channels at times, step ends: (times, channels), and their derivatives by parameters: (times,
+    channels, parameters)."""
+    import numpy as np
+
+    of = _at_times(channels, times)
+    _, found = _differentiate(source, of, list(wrt), True, False, True)
+    shape = (len(times), len(channels))
+    values = np.array([outcome[1] for outcome in found]).reshape(shape)
+    return values, np.array([outcome[4] for outcome in found]).reshape(*shape, len(wrt))
+
+
+def pulled_back(source: Source, channels: "Sequence[str]", times: Any, weights: Any, wrt: "Sequence[str]") -> Any:
+    """Derivative of the sum of channels at times, step ends, with weights (times, channels), by parameters
+    (parameters,): one adjoint."""
+    import numpy as np
+
+    of = _at_times(channels, times)
+    factors = np.asarray(weights, dtype=float).ravel().tolist()
+    _, found = _differentiate(source, of, list(wrt), False, False, False, factors)
+    return np.array(found[0][4])
 
 
 @overload
@@ -84,19 +146,10 @@ def gradient(
 
     Returns a Gradient, or a list of them for a list of outcomes. Derivatives are per unit of the number in the model,
     in SI if it has a unit there. Doubts, as in chaotic motions, are warnings. Raises ModelError for models, parameters
-    and outcomes that have no gradient, such as those with contacts, and for models with callables.
+    and outcomes that have no gradient, such as those with contacts, and for models with callables; NotConverged for a
+    run that does not end.
     """
     outcomes = [of] if isinstance(of, str) else list(of)
     paths = [wrt] if isinstance(wrt, str) else list(wrt)
-    text, name = _text_of(model)
-    by_tangents = len(outcomes) > len(paths) if forward is None else forward
-    listed = overrides_list(overrides)
-    parameters, found = _native.gradient(text, name, listed, outcomes, paths, by_tangents, error_bars)
-    results = []
-    for outcome, value, unit, time, by, bars, growth, check, doubts in found:
-        for doubt in doubts:
-            warnings.warn(doubt, stacklevel=2)
-        slopes = {path: slope for (path, _, _), slope in zip(parameters, by)}
-        elasticity = {path: size / value * slopes[path] for path, size, _ in parameters if size and value}
-        results.append(Gradient(outcome, value, unit, time, slopes, dict(zip(slopes, bars)), elasticity, growth, check))
+    results = gradients(source_of(model, overrides), outcomes, paths, forward, error_bars)
     return results[0] if isinstance(of, str) else results

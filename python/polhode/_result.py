@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from . import _native
+from ._derivatives import Differentiable
 from ._stores import FileStore, Store
 from ._tree import counted
 
@@ -137,7 +138,7 @@ class Report(dict):  # type: ignore[type-arg]
         return "\n".join(f"{key:34} {value}" for key, value in self.items() if not isinstance(value, (dict, list)))
 
 
-class Result:
+class Result(Differentiable):
     """Results of a run, frame by frame. SI units; vectors are in world axes.
 
     time (T,) [s]; bodies[name].position (T, 3) [m], .orientation (T, 4) quaternion (w, x, y, z) body
@@ -145,6 +146,7 @@ class Result:
     body on the second, .moment [N m], .coordinates (T, free) [rad or m], .rates; loads, contacts,
     solids, beams and cables by name; energy, momentum and solver. Arrays are read-only, and those of a run
     are views of the engine's memory: `.copy()` gives one to change. docs/reference/results_file.md lists them all.
+    gradient, push_forward, pull_back and uncertainty differentiate the run by numbers of its model.
     """
 
     def __init__(self, store: Store, ledger: "Optional[dict[str, Any]]" = None) -> None:
@@ -424,7 +426,7 @@ class Result:
 
     def __getstate__(self) -> "dict[str, Any]":
         return {"_store": self._store, "_ledger": self._ledger, "_tables": None, "_columns": {},
-                "_written": self._written}
+                "_written": self._written, "_origin": self._origin}
 
     def __setstate__(self, state: "dict[str, Any]") -> None:
         self.__dict__.update(state)

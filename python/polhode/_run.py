@@ -11,6 +11,7 @@ from typing import Any, Optional, Union
 
 from . import _native
 from ._errors import NotConverged, fault
+from ._gradient import source_of
 from ._model import Model, Overrides, load, overrides_list
 from ._progress import Bar
 from ._result import Result
@@ -54,6 +55,7 @@ def run(
         ledger.pop(key)
     store = MemoryStore(recording.channels(), recording.views(), recording.fixed(), recording.probes())
     result = Result(store, ledger)
+    result._origin = source_of(model, overrides)
     if output is not None:
         result._written = os.path.abspath(os.fspath(output))
     _report(ledger)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies: many runs of a model, and parameter estimation from data."""
+"""Studies: many runs of a model."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import json
 import os
 import pickle
 from collections.abc import Mapping, Sequence
-from typing import Any, Callable, NamedTuple, Optional, Union
+from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
-from ._errors import ModelError, NotConverged
-from ._gradient import tangents
+from ._errors import NotConverged
+from ._gradient import gradients as gradients_of
+from ._gradient import source_of
+from ._measure import measure
 from ._model import Model
 from ._result import Result
 from ._run import run
@@ -49,27 +51,19 @@ def _points(parameters: "Mapping[str, Any]", n: Optional[int], method: str, seed
     return [dict(zip(names, row)) for row in values.tolist()]
 
 
-def _last(result: Result, outputs: "Sequence[str]") -> "dict[str, Any]":
-    """Channels at the last frame, a number for each component."""
-    row: "dict[str, Any]" = {}
-    for name in outputs:
-        value = np.asarray(result[name])[-1]
-        letters = {3: "xyz", 4: "wxyz"}.get(value.size, "0123456789") if value.ndim else ""
-        if value.ndim:
-            row.update({f"{name}.{c}": float(x) for c, x in zip(letters, value.ravel())})
-        else:
-            row[name] = float(value)
-    return row
-
-
-def _one(task: "tuple[Model, dict[str, Any], Any]") -> "dict[str, Any]":
+def _one(task: "tuple[Model, dict[str, Any], Any, list[str]]") -> "dict[str, Any]":
     """One run as a row; a failure is a row with its message."""
-    model, point, outputs = task
+    model, point, outputs, outcomes = task
     row: "dict[str, Any]" = {**point, "message": ""}
     try:
         result = run(model, overrides=point, progress=False)
         row.update({name: result.ledger[name] for name in _FIGURES})
-        row.update(outputs(result) if callable(outputs) else _last(result, outputs))
+        for text in () if callable(outputs) else outputs:
+            row.update(measure(result, text))
+        if callable(outputs):
+            row.update(outputs(result))
+        for g in gradients_of(source_of(model, point), outcomes, list(point), None, False) if outcomes else ():
+            row.update({f"d({g.outcome})/d({path})": slope for path, slope in g.by.items()})
     except NotConverged as error:
         row["message"] = str(error)
         if error.result is not None:
@@ -86,6 +80,7 @@ def sweep(
     n: Optional[int] = None,
     method: str = "grid",
     outputs: "Union[Sequence[str], Callable[[Result], dict[str, Any]]]" = (),
+    gradients: "Sequence[str]" = (),
     processes: Optional[int] = None,
     resume: "Union[str, os.PathLike[str], None]" = None,
     seed: int = 0,
@@ -97,8 +92,11 @@ def sweep(
     method:     "grid": all combinations; a list gives values, a tuple (from, to) n equal steps.
                 "sobol", "lhs" (Latin hypercube): n points between (lowest, highest) of each.
                 "normal": n points of (mean, standard deviation).
-    outputs:    channels whose last values become columns, or a function of the Result that returns a
-                dict; with several processes a function that can be pickled.
+    outputs:    channels whose last values become columns, or measures: "max(joints.A.force.size)", min, mean, rms,
+                range, "at(bodies.b.position.x, 0.5)", "first(probes.tip.z > 0.3)" as a time; or a function of the
+                Result that returns a dict, with several processes one that can be pickled.
+    gradients:  outcomes, as polhode.gradient takes them, whose derivatives by the varied parameters become columns:
+                "d(probes.tip.z@end)/d(variables.L)".
     processes:  number of parallel processes; None: one for each processor. 1 runs in this process.
     resume:     a file to which rows are appended as they are computed; its runs are not repeated.
     seed:       of sobol, lhs and normal.
@@ -113,12 +111,12 @@ def sweep(
 
     points = _points(parameters, n, method, seed)
     wanted = outputs if callable(outputs) else list(outputs)
-    identity = hashlib.sha256(pickle.dumps((model.to_dict(), wanted))).hexdigest()
+    identity = hashlib.sha256(pickle.dumps((model.to_dict(), wanted, *gradients))).hexdigest()
     rows: "dict[int, dict[str, Any]]" = {}
     path = os.fspath(resume) if resume is not None else None
     if path is not None and os.path.exists(path):
         rows = _rows_of(path, identity, points)
-    tasks = {i: (model, point, outputs) for i, point in enumerate(points) if i not in rows}
+    tasks = {i: (model, point, wanted, list(gradients)) for i, point in enumerate(points) if i not in rows}
     log = None
     if path is not None:
         log = io.open(path, "a", encoding="utf-8")
@@ -187,114 +185,3 @@ def _on_workers(tasks: "dict[int, Any]", client: Any) -> Any:
     waiting = {client.submit(_one, task, pure=False, retries=3): i for i, task in tasks.items()}
     for future in as_completed(waiting):
         yield waiting[future], future.result()
-
-
-class Fit(NamedTuple):
-    """Least-squares estimates of parameters."""
-
-    parameters: "dict[str, float]"  #: Estimates by path.
-    covariance: Any  #: (p, p), in the order of `parameters`, scaled by the variance of the residuals.
-    residuals: Any  #: (m,) at the estimates.
-    result: Result  #: Run with the estimates.
-    data: "dict[str, Any]"  #: Measured values by channel, including "time".
-
-    @property
-    def errors(self) -> "dict[str, float]":
-        """Standard errors of the estimates."""
-        return dict(zip(self.parameters, np.sqrt(np.diag(self.covariance)).tolist()))
-
-    def plot(self) -> Any:
-        """Draws the run with the estimates and the measured values, a panel for each channel. Returns the figure."""
-        names = [name for name in self.data if name != "time"]
-        figure = self.result.plot(*names)
-        for panel, name in zip(figure.axes, names):
-            panel.plot(self.data["time"], np.reshape(self.data[name], (len(self.data["time"]), -1)), "k.", markersize=3,
-                       zorder=1, label="measured")
-            panel.legend(loc="best", fontsize="small")
-        return figure
-
-
-def _components(channel: str, count: int) -> "list[str]":
-    """Names of the numbers of a channel of results."""
-    if channel.endswith(".coordinates"):
-        return [f"{channel}.{k}" for k in range(count)]
-    return [channel] if count == 1 else [f"{channel}.{axis}" for axis in "xyz"[:count]]
-
-
-def fit(
-    model: Model,
-    data: "Mapping[str, Any]",
-    parameters: "Mapping[str, float]",
-    *,
-    bounds: "Optional[Mapping[str, tuple[float, float]]]" = None,
-    jacobian: str = "differences",
-) -> Fit:
-    """Estimates parameters of a model from measured channels, by scipy.optimize.least_squares.
-
-    data:       measured values by channel, including "time": {"time": t (m,) [s], "joints.A.coordinates": y},
-                or a pandas.DataFrame. Results are interpolated at these times by cubic splines.
-    parameters: initial guesses, by path as overrides: {"loads.damper.damping": 0.1}.
-    bounds:     (lowest, highest) by path.
-    jacobian:   "differences" of runs, or "exact" tangents of one run, as polhode.gradient: for positions and
-                velocities of bodies and coordinates of joints, with a fixed step.
-
-    Raises ModelError or NotConverged if the model does not run at the initial guesses, ValueError if the
-    lengths of the data differ or times decrease.
-    """
-    if jacobian not in ("differences", "exact"):
-        raise ValueError(f"jacobian is '{jacobian}': use differences or exact")
-    from scipy.interpolate import CubicSpline
-    from scipy.optimize import least_squares
-
-    times = np.asarray(data["time"], dtype=float)
-    measured = {name: np.asarray(data[name], dtype=float) for name in data if name != "time"}
-    if np.any(np.diff(times) < 0):
-        raise ValueError("the times of the data must not decrease")
-    for name, values in measured.items():
-        if len(values) != len(times):
-            raise ValueError(f"'{name}' has {len(values)} values at {len(times)} times")
-    names = list(parameters)
-    scale = np.array([abs(parameters[k]) or 1.0 for k in names])
-
-    runs: "list[int]" = []
-    latest: "list[Any]" = []  # the last parameters, and their run
-
-    def run_at(x: Any) -> Result:
-        return run(model, overrides=dict(zip(names, (x * scale).tolist())), progress=False)
-
-    def residuals(x: Any) -> Any:
-        try:
-            result = run_at(x)
-        except (ModelError, NotConverged):
-            if not runs:
-                raise
-            # Not finite: the search takes a shorter step.
-            return np.full(sum(values.size for values in measured.values()), np.inf)
-        runs.append(1)
-        latest[:] = [x, result]
-        parts = []
-        for name, values in measured.items():
-            channel = np.asarray(result[name]).reshape(len(result.time), -1)
-            parts.append((CubicSpline(result.time, channel)(times) - values.reshape(len(times), -1)).ravel())
-        return np.concatenate(parts)
-
-    def slopes(x: Any) -> Any:
-        """Derivatives of the residuals: splines through the derivatives of the channels at output times."""
-        at = dict(zip(names, (x * scale).tolist()))
-        result = latest[1] if np.array_equal(latest[0], x) else run_at(x)
-        parts = []
-        for name in measured:
-            channel = np.asarray(result[name]).reshape(len(result.time), -1)
-            by = tangents(model, _components(name, channel.shape[1]), result.time, names, at)
-            parts.append(CubicSpline(result.time, by)(times).reshape(-1, len(names)) * scale)
-        return np.concatenate(parts)
-
-    limits = [(bounds or {}).get(k, (-np.inf, np.inf)) for k in names]
-    low, high = (np.array([b[i] for b in limits]) / scale for i in (0, 1))
-    start = np.array([parameters[k] for k in names]) / scale
-    way: "dict[str, Any]" = {"jac": slopes} if jacobian == "exact" else {"diff_step": 1e-5}
-    found = least_squares(residuals, start, bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12, **way)
-    freedoms = max(1, len(found.fun) - len(names))
-    covariance = np.linalg.inv(found.jac.T @ found.jac) * (found.fun @ found.fun / freedoms) * np.outer(scale, scale)
-    return Fit(dict(zip(names, (found.x * scale).tolist())), covariance, found.fun, run_at(found.x),
-               {"time": times, **measured})

@@ -62,7 +62,14 @@ def _arguments() -> argparse.ArgumentParser:
     parser.add_argument("-n", type=int, help="number of points; of a grid: steps of each range (5)")
     parser.add_argument("--method", choices=["grid", "sobol", "lhs", "normal"], default="grid")
     parser.add_argument("--output", action="append", default=[], metavar="CHANNEL",
-                        help="a channel whose last values become columns, such as bodies.rod.position; may be repeated")
+                        help="a channel whose last values become columns, such as bodies.rod.position, or a measure: "
+                        "max(CHANNEL), min, mean, rms, range, final, at(CHANNEL, TIME), first(CHANNEL > VALUE); a "
+                        "vector's CHANNEL.size; probes.NAME.COLUMN; may be repeated")
+    parser.add_argument("--gradient", action="append", default=[], metavar="OUTCOME",
+                        help="an outcome such as bodies.rod.position.x@end, whose exact derivatives by the parameters "
+                        "become columns; may be repeated")
+    parser.add_argument("--plot", metavar="FILE", help="draws the outputs over one parameter, or as a map over two "
+                        "(.svg, .png, .pdf)")
     parser.add_argument("-o", "--table", default="sweep.csv", help="the table (sweep.csv)")
     parser.add_argument("--jobs", "-j", type=int, help="number of parallel runs; default: one for each processor")
     parser.add_argument("--dask", metavar="ADDRESS", help="runs on the workers of this Dask scheduler")
@@ -86,7 +93,9 @@ def main(arguments: "Optional[list[str]]" = None) -> int:
 
 
 def _sweep(given: argparse.Namespace) -> int:
+    from ._measure import measure
     from ._model import load
+    from ._run import run
     from ._sweep import sweep
 
     if not given.vary:
@@ -97,19 +106,35 @@ def _sweep(given: argparse.Namespace) -> int:
     parameters = {f"variables.{k}" if k in known else k: v for k, v in parameters.items()}
     if given.method != "grid" and given.n is None:
         raise _Usage(f"the method {given.method} requires -n, the number of points")
-    model.check({k: v[0] for k, v in parameters.items()})  # faults of all runs end the command at once
+    first = {k: v[0] for k, v in parameters.items()}
+    model.check(first)  # faults of all runs end the command at once
+    if given.plot and len(parameters) > 2:
+        raise _Usage(f"--plot draws over one or two parameters, and {len(parameters)} vary")
+    if given.plot and not given.output and not given.gradient:
+        raise _Usage("--plot requires --output, which says what is drawn")
+    if given.output and model.analysis.get("type", "dynamics") == "dynamics":
+        beginning = run(model, overrides={**first, "analysis.duration": "1e-9 s"}, progress=False)
+        for text in given.output:
+            try:
+                measure(beginning, text)
+            except (KeyError, ValueError) as error:
+                raise _Usage(f"--output {text}: {error.args[0]}") from None
     client: Any = None
     if given.dask:
         client = importlib.import_module("distributed").Client(given.dask)
     try:
-        table = sweep(model, parameters, n=given.n, method=given.method, outputs=given.output, processes=given.jobs,
-                      resume=given.table + ".rows", seed=given.seed, client=client)
+        table = sweep(model, parameters, n=given.n, method=given.method, outputs=given.output, gradients=given.gradient,
+                      processes=given.jobs, resume=given.table + ".rows", seed=given.seed, client=client)
     finally:
         if client is not None:
             client.close()
     whole = given.table + ".part"
     table.to_parquet(whole) if given.table.endswith(".parquet") else table.to_csv(whole, index=False)
     os.replace(whole, given.table)
+    if given.plot:
+        from ._sweep_plot import draw
+
+        draw(table, list(parameters), given.plot)
     failed = int((table.message != "").sum())
     faults = f", {failed} of them failed: see the column message" if failed else ""
     print(f"{given.table}: {len(table)} runs{faults}")

@@ -17,11 +17,12 @@ struct Differentiated {
 
 Differentiated gradient_of(const io::ModelText& source, const std::vector<std::string>& of,
                            const std::vector<std::string>& wrt, bool forward, bool bars,
-                           bool only_last_adjoint) {
+                           bool only_last_adjoint, const std::vector<double>& weights) {
   Differentiated d;
   Model model = io::read_model_text(source.text, source.file, source.overrides);
   d.request.forward = forward;
   d.request.only_last_adjoint = only_last_adjoint;
+  d.request.weights = weights;
   for (const std::string& path : wrt)
     d.request.parameters.push_back(io::gradient_parameter(source, path));
   for (const std::string& outcome : of) d.request.outcomes.push_back(parse_outcome(outcome));
@@ -33,15 +34,17 @@ Differentiated gradient_of(const io::ModelText& source, const std::vector<std::s
 }
 
 /// Parameters as (path, value, unit), then for each outcome (text, value, unit, time, gradient,
-/// error bars, growth, tangent against adjoint, warnings).
+/// error bars, growth, tangent against adjoint, warnings); with weights, one for each outcome, only
+/// that of their weighted sum.
 nb::tuple gradient(const std::string& text, const std::string& name,
                    const std::vector<std::string>& overrides, const std::vector<std::string>& of,
                    const std::vector<std::string>& wrt, bool forward, bool bars,
-                   bool only_last_adjoint) {
+                   bool only_last_adjoint, const std::vector<double>& weights) {
   Differentiated d;
   {
     const nb::gil_scoped_release unlocked;
-    d = gradient_of({text, name, name, overrides}, of, wrt, forward, bars, only_last_adjoint);
+    d = gradient_of({text, name, name, overrides}, of, wrt, forward, bars, only_last_adjoint,
+                    weights);
   }
   nb::list parameters, outcomes;
   for (const GradientParameter& p : d.request.parameters)
@@ -61,7 +64,7 @@ nb::tuple gradient(const std::string& text, const std::string& name,
 void bind_gradient(nb::module_& m) {
   m.def("gradient", &gradient, nb::arg("text"), nb::arg("name"), nb::arg("overrides"),
         nb::arg("of"), nb::arg("wrt"), nb::arg("forward"), nb::arg("bars"),
-        nb::arg("only_last_adjoint") = false);
+        nb::arg("only_last_adjoint") = false, nb::arg("weights") = std::vector<double>{});
 }
 
 }  // namespace polhode::python

@@ -5,6 +5,7 @@
 
 #include <Eigen/Sparse>
 
+#include <polhode/core/assert.hpp>
 #include <polhode/core/clock.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -109,9 +110,15 @@ class Differentiation {
 
   std::vector<OutcomeGradient> compute() {
     const std::size_t n = shifts_.size();
-    gradients_.resize(readers_.size());
-    weights_.resize(readers_.size());
-    for (std::size_t k = 0; k < readers_.size(); ++k) find_weights(k);
+    const bool added_up = !request_.weights.empty();
+    gradients_.resize(added_up ? 1 : readers_.size());
+    weights_.resize(gradients_.size());
+    for (std::size_t k = 0; k < readers_.size(); ++k)
+      if (added_up)
+        find_weights(k, 0, request_.weights[k]);
+      else
+        find_weights(k, k, 1.0);
+    if (added_up) merge_weights();
     start_ = Mat::Zero(derivative_.state_size(), static_cast<Eigen::Index>(n));
     for (std::size_t j = 0; j < n; ++j) {
       start_.col(static_cast<Eigen::Index>(j)) =
@@ -129,20 +136,39 @@ class Differentiation {
     Vec by_state;
   };
 
-  /// Value, explicit derivative by parameters and weights on states of an outcome.
-  void find_weights(std::size_t k) {
-    OutcomeGradient& g = gradients_[k];
-    g.outcome = request_.outcomes[k].text;
-    g.unit = readers_[k].unit();
-    g.by.assign(shifts_.size(), 0.0);
+  /// Value, explicit derivative by parameters and weights on states of outcome k, which is added
+  /// with a factor to what is differentiated.
+  void find_weights(std::size_t k, std::size_t into, double factor) {
+    OutcomeGradient& g = gradients_[into];
+    const bool added_up = !request_.weights.empty();
+    g.outcome = added_up ? "weighted sum" : request_.outcomes[k].text;
+    g.unit = added_up ? "" : readers_[k].unit();
+    g.by.resize(shifts_.size(), 0.0);
+    if (factor == 0.0) return;
     for (const Place& place : places_[k]) {
       const State& state = tape_.states[place.state];
-      g.value += place.weight * readers_[k].value(system_, state);
-      g.time = state.t;
-      weights_[k].push_back({place.state, place.weight * readers_[k].by_state(system_, state)});
+      const double weight = factor * place.weight;
+      g.value += weight * readers_[k].value(system_, state);
+      g.time = std::max(g.time, state.t);
+      weights_[into].push_back({place.state, weight * readers_[k].by_state(system_, state)});
       for (std::size_t j = 0; j < shifts_.size(); ++j)
-        g.by[j] += place.weight * shifts_[j].of_value(k, state);
+        g.by[j] += weight * shifts_[j].of_value(k, state);
     }
+  }
+
+  /// One weight for each state: the sum of those of all outcomes there.
+  void merge_weights() {
+    std::vector<Weight>& list = weights_.front();
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Weight& a, const Weight& b) { return a.state < b.state; });
+    std::vector<Weight> merged;
+    for (Weight& w : list) {
+      if (!merged.empty() && merged.back().state == w.state)
+        merged.back().by_state += w.by_state;
+      else
+        merged.push_back(std::move(w));
+    }
+    list = std::move(merged);
   }
 
   /// Direction of the parameters in which tangent and adjoint are compared: none is zero, none is
@@ -196,9 +222,9 @@ class Differentiation {
   void go_forward() {
     const Vec d = direction();
     Mat tangents = request_.forward ? start_ : Mat(start_ * d);
-    tangent_.assign(readers_.size(), Vec::Zero(tangents.cols()));
+    tangent_.assign(gradients_.size(), Vec::Zero(tangents.cols()));
     const auto look = [&](std::size_t state) {
-      for (std::size_t k = 0; k < readers_.size(); ++k)
+      for (std::size_t k = 0; k < gradients_.size(); ++k)
         if (const Weight* w = weight_at(k, state))
           tangent_[k] += tangents.transpose() * w->by_state;
     };
@@ -236,7 +262,7 @@ class Differentiation {
   }
 
   void go_backward() {
-    const std::size_t outcomes = readers_.size();
+    const std::size_t outcomes = gradients_.size();
     const std::size_t begin = request_.only_last_adjoint && request_.forward ? outcomes - 1 : 0;
     std::vector<Vec> mu(outcomes, Vec::Zero(derivative_.state_size()));
     std::vector<double> first(outcomes, 0.0), most(outcomes, 0.0);
@@ -310,6 +336,7 @@ RunGradient differentiate(const Model& model, const GradientRequest& request) {
   if (request.parameters.empty())
     throw InputError("the parameters", "are missing",
                      "Name paths of the model, such as bodies.rod.mass");
+  POLHODE_ASSERT(request.weights.empty() || request.weights.size() == request.outcomes.size());
   SystemMap map;
   const System system = build_system(model, &map);
   require_differentiable(model, system);

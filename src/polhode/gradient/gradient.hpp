@@ -23,6 +23,9 @@ struct GradientParameter {
 struct GradientRequest {
   std::vector<GradientParameter> parameters{};
   std::vector<Outcome> outcomes{};
+  /// Factors of the outcomes, one for each: instead of each outcome their weighted sum is
+  /// differentiated, by one adjoint. Empty: each by itself.
+  std::vector<double> weights{};
   /// Tangents of all parameters instead of the adjoint of each outcome: for more outcomes than
   /// parameters.
   bool forward = false;

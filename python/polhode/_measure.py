@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures: numbers of a result, written as text: "max(joints.A.force.size)"."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Callable
+
+import numpy as np
+
+from . import _native
+from ._result import Group, Result
+
+_CALL = re.compile(r"\s*(\w+)\s*\((.*)\)\s*")
+_FIRST = re.compile(r"(.+?)\s*([<>])\s*([^<>]+)")
+_FORMS = "max(CHANNEL), min, mean, rms, range, final, at(CHANNEL, TIME), first(CHANNEL > VALUE) or <"
+
+
+def _mean(t: Any, values: Any) -> Any:
+    """Mean over time by the trapezoidal rule."""
+    if len(t) < 2 or t[-1] == t[0]:
+        return values[-1]
+    widths = np.diff(t)
+    return np.tensordot(widths, 0.5 * (values[1:] + values[:-1]), 1) / (t[-1] - t[0])
+
+
+_WHOLE: "dict[str, Callable[[Any, Any], Any]]" = {
+    "max": lambda t, v: v.max(axis=0),
+    "min": lambda t, v: v.min(axis=0),
+    "mean": _mean,
+    "rms": lambda t, v: np.sqrt(_mean(t, v * v)),
+    "range": lambda t, v: v.max(axis=0) - v.min(axis=0),
+    "final": lambda t, v: v[-1],
+}
+
+
+def _series(result: Result, channel: str) -> "tuple[Any, Any]":
+    """Times and values (T, ...) of a channel, of a probe, or of the size of a vector as CHANNEL.size."""
+    above, _, last = channel.rpartition(".")
+    if last == "size" and above:
+        t, vectors = _series(result, above)
+        if vectors.ndim != 2:
+            raise KeyError(f"'{above}' is no vector, so it has no size")
+        return t, np.linalg.norm(vectors, axis=1)
+    if channel.startswith("probes."):
+        name, _, column = channel[len("probes."):].rpartition(".")
+        probes = result.probes
+        if name not in probes:
+            near = _native.closest(name, list(probes))
+            raise KeyError(f"there is no probe '{name}'" + (f". Did you mean '{near}'?" if near else ""))
+        table = probes[name]
+        return np.asarray(table["t"]), np.asarray(table[column])
+    found = result[channel]
+    if isinstance(found, Group):
+        raise KeyError(f"'{channel}' is a group: name one of its channels: {', '.join(list(found)[:8])}")
+    return np.asarray(result.time), np.asarray(found)
+
+
+def _parts(name: str, form: str, value: Any) -> "dict[str, float]":
+    """A number, or one for each component; `form` has {} for the name of the channel."""
+    array = np.asarray(value)
+    if array.ndim == 0:
+        return {form.format(name): float(array)}
+    letters = {3: "xyz", 4: "wxyz"}.get(array.size, "")
+    labels = list(letters) if letters and array.ndim == 1 else [str(k) for k in range(array.size)]
+    return {form.format(f"{name}.{c}"): float(x) for c, x in zip(labels, array.ravel())}
+
+
+def _number(text: str, of: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"'{of}': '{text.strip()}' is not a number in SI units") from None
+
+
+def measure(result: Result, text: str) -> "dict[str, float]":
+    """Numbers of a result by name: of a channel its last value, or of a function of a channel over time.
+
+    Functions: max, min, mean and rms (over time), range, final, at(CHANNEL, TIME) between frames linearly,
+    first(CHANNEL > VALUE): the first time, by linear interpolation, NaN if there is none. A vector gives a number for
+    each component, CHANNEL.size its length; probes.NAME.COLUMN a column of a probe. Raises KeyError for an unknown
+    channel, ValueError for an unknown function.
+    """
+    call = _CALL.fullmatch(text)
+    if not call:
+        name = text.strip()
+        return _parts(name, "{}", _series(result, name)[1][-1])
+    function, inside = call.group(1), call.group(2)
+    if function in _WHOLE:
+        name = inside.strip()
+        t, values = _series(result, name)
+        return _parts(name, f"{function}({{}})", _WHOLE[function](t, values))
+    if function == "at":
+        name, comma, when = (part.strip() for part in inside.rpartition(","))
+        if not comma:
+            raise ValueError(f"'{text}': write at(CHANNEL, TIME)")
+        t, values = _series(result, name)
+        flat = values.reshape(len(t), -1)
+        at = [np.interp(_number(when, text), t, column) for column in flat.T]
+        return _parts(name, f"at({{}}, {when})", np.array(at).reshape(values.shape[1:]))
+    if function == "first":
+        return {text.strip(): _first(result, text, inside)}
+    near = _native.closest(function, [*_WHOLE, "at", "first"])
+    raise ValueError(f"'{text}': there is no function '{function}'" + (f". Did you mean '{near}'?" if near else "")
+                     + f" Write {_FORMS}")
+
+
+def _first(result: Result, text: str, inside: str) -> float:
+    """First time at which a channel is above or below a value."""
+    parts = _FIRST.fullmatch(inside.strip())
+    if not parts:
+        raise ValueError(f"'{text}': write first(CHANNEL > VALUE)")
+    t, values = _series(result, parts.group(1).strip())
+    if values.ndim > 1:
+        raise ValueError(f"'{text}': name a component or .size of the vector")
+    over = (values - _number(parts.group(3), text)) * (1 if parts.group(2) == ">" else -1)
+    found = np.flatnonzero(over > 0)
+    if not len(found):
+        return float("nan")
+    k = int(found[0])
+    if k == 0:
+        return float(t[0])
+    return float(t[k - 1] + (t[k] - t[k - 1]) * (-over[k - 1]) / (over[k] - over[k - 1]))
