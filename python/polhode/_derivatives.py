@@ -18,13 +18,14 @@ if TYPE_CHECKING:
 class Uncertainty:
     """Standard deviations of channels over time, to first order in the deviations of parameters.
 
-    time (T,) [s]; values, deviation: by channel, each (T, components) or (T,); parts: by channel and parameter, the
-    deviation of the channel if that parameter alone were uncertain, with the sign of its derivative.
+    time (T,) [s]; values, deviation: by channel, each (T, components) or (T,), in SI units; units: of these;
+    parts: by channel and parameter, the deviation of the channel if that parameter alone were uncertain, with the sign
+    of its derivative.
     """
 
     def __init__(self, time: Any, values: "dict[str, Any]", deviation: "dict[str, Any]",
-                 parts: "dict[str, dict[str, Any]]") -> None:
-        self.time, self.values, self.deviation, self.parts = time, values, deviation, parts
+                 parts: "dict[str, dict[str, Any]]", units: "dict[str, str]") -> None:
+        self.time, self.values, self.deviation, self.parts, self.units = time, values, deviation, parts, units
 
     def plot(self) -> Any:
         """Draws each channel with a band of two standard deviations, a panel for each. Returns the figure."""
@@ -32,12 +33,12 @@ class Uncertainty:
 
         figure, panels = pyplot.subplots(len(self.values), 1, sharex=True, squeeze=False, layout="constrained")
         for panel, (name, value) in zip(panels[:, 0], self.values.items()):
-            several = value.ndim > 1
+            several = value.ndim > 1 and value.shape[1] > 1
             rows, bands = value.reshape(len(value), -1).T, self.deviation[name].reshape(len(value), -1).T
-            for row, band, axis in zip(rows, bands, "xyz" if several else [""]):
+            for row, band, axis in zip(rows, bands, "xyz" if several else ("",)):
                 (line,) = panel.plot(self.time, row, label=axis or None)
                 panel.fill_between(self.time, row - 2 * band, row + 2 * band, color=line.get_color(), alpha=0.25)
-            panel.set_ylabel(name)
+            panel.set_ylabel(f"{name} [{self.units[name]}]")
             if several:
                 panel.legend(loc="best", fontsize="small")
         panels[-1, 0].set_xlabel("time [s]")
@@ -160,7 +161,14 @@ class Differentiable:
             values[name] = value
             spread[name] = np.sqrt(np.maximum(0.0, np.einsum("...i,ij,...j->...", by, covariance, by)))
             parts[name] = {path: by[..., k] * sizes[k] for k, path in enumerate(paths)}
-        return Uncertainty(np.asarray(self.time), values, spread, parts)  # type: ignore[attr-defined]
+        units = {name: self._unit_of(name) for name in values}
+        return Uncertainty(np.asarray(self.time), values, spread, parts, units)  # type: ignore[attr-defined]
+
+    def _unit_of(self, channel: str) -> str:
+        if not channel.startswith("probes."):
+            return str(self.unit(channel))  # type: ignore[attr-defined]
+        name, _, column = channel[len("probes."):].rpartition(".")
+        return str(self.probes[name].unit(column))  # type: ignore[attr-defined]
 
     def _tangents(self, paths: "list[str]", channels: "Sequence[str]") -> "dict[str, tuple[Any, Any]]":
         """Values (T, ...) and derivatives (T, ..., parameters) of channels."""

@@ -77,7 +77,7 @@ def test_deviations_follow_from_those_of_parameters(step: str) -> None:
     assert u.values["bodies.ball.position"] == pytest.approx(r["bodies.ball.position"], abs=1e-12)
     together = r.uncertainty(sizes, ["bodies.ball.position"], correlation=[[1, 1], [1, 1]])
     assert together.deviation["bodies.ball.position"][:, 2] == pytest.approx(sum(own), abs=1e-8)
-    assert "bodies.ball.position" in repr(u)
+    assert "bodies.ball.position" in repr(u) and u.units == {"bodies.ball.position": "m"}
     for wrong in ([[1, 2], [2, 1]], [[1, 0.5], [0, 1]], [[1]]):
         with pytest.raises(ValueError, match="correlation must be a correlation matrix of 2"):
             r.uncertainty(sizes, ["bodies.ball.position"], correlation=wrong)
@@ -96,7 +96,8 @@ def test_deviations_are_those_of_many_runs() -> None:
 
     matplotlib.use("Agg")
     (panel,) = u.plot().axes
-    assert panel.get_ylabel() == "joints.hinge.coordinates" and len(panel.lines) == 1 and len(panel.collections) == 1
+    assert panel.get_ylabel() == "joints.hinge.coordinates [rad or m]" and panel.get_legend() is None
+    assert len(panel.lines) == 1 and len(panel.collections) == 1
 
 
 def test_what_a_result_cannot_differentiate_is_refused(tmp_path: pathlib.Path) -> None:
@@ -238,3 +239,10 @@ def test_what_minimize_does_not_take_is_said() -> None:
                          cost=lambda v, x: (0.0, [0.0], None))
     with pytest.raises(polhode.ModelError, match="gravity.9"):
         polhode.minimize(throw(), "bodies.ball.position.z@end", {"gravity.9": 1.0})
+
+
+def test_points_of_probes_have_deviations_too() -> None:
+    m = throw()
+    m.output = {"probes": {"edge": {"body": "ball", "point": [0.1, 0, 0]}}}
+    u = polhode.run(m, progress=False).uncertainty({"bodies.ball.velocity.0": 0.1}, ["probes.edge.x"])
+    assert u.deviation["probes.edge.x"] == pytest.approx(0.1 * u.time, abs=1e-12) and u.units["probes.edge.x"] == "m"

@@ -380,6 +380,33 @@ TEST(RunGradient, OfTangentsIsThatOfTheAdjoint) {
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(quick.outcomes[k].by, tangents.outcomes[k].by);
 }
 
+/// @tests{step-adjoint}
+TEST(RunGradient, OfAWeightedSumIsTheSumOfGradients) {
+  for (const double step : {0.05, 0.01, 1e-3}) {
+    GradientCase c = double_pendulum(step, static_cast<int>(std::lround(0.5 / step)));
+    c.outcomes = {"bodies.two.position.z@end", "bodies.one.position.x@mean",
+                  "bodies.two.velocity.y@0.25", "bodies.two.position.z@0.25"};
+    GradientRequest request = c.request();
+    const std::vector<OutcomeGradient> each = differentiate(c.model(), request).outcomes;
+    request.weights = {0.5, -2.0, 3.0, 0.0};
+    const std::vector<OutcomeGradient> sum = differentiate(c.model(), request).outcomes;
+    ASSERT_EQ(sum.size(), 1U);
+    EXPECT_LT(sum.front().spot_check, 1e-11);
+    double value = 0.0;
+    for (std::size_t k = 0; k < each.size(); ++k) value += request.weights[k] * each[k].value;
+    EXPECT_NEAR(sum.front().value, value, 1e-13 * std::abs(value));
+    for (std::size_t j = 0; j < request.parameters.size(); ++j) {
+      double by = 0.0, size = 0.0;
+      for (std::size_t k = 0; k < each.size(); ++k) {
+        by += request.weights[k] * each[k].by[j];
+        size += std::abs(request.weights[k] * each[k].by[j]);
+      }
+      EXPECT_NEAR(sum.front().by[j], by, 1e-12 * size)
+          << request.parameters[j].path << ", " << step;
+    }
+  }
+}
+
 TEST(RunGradient, OfACoordinateByNumberIsThatByName) {
   GradientCase c = double_pendulum(0.01, 10);
   c.outcomes = {"joints.B.rz@end", "joints.B.coordinates.0@end"};
