@@ -24,7 +24,7 @@ h1, h2, h3 { font-family: sans-serif; line-height: 1.2; break-after: avoid; }
 section.page { break-before: page; }
 pre, code { font: 8.5pt/1.35 monospace; } pre { white-space: pre-wrap; border: 1px solid #ccc; padding: 2mm; }
 table { border-collapse: collapse; font-size: 8.5pt; overflow-wrap: anywhere; } td, th { border: 1px solid #bbb; padding: 1mm 1.5mm; text-align: left; vertical-align: top; }
-img { max-width: 100%; } a { color: #1f4f8f; text-decoration: none; } .headerlink { display: none; }
+td p, th p { margin: 0; } tr { break-inside: avoid; } img { max-width: 100%; } a { color: #1f4f8f; text-decoration: none; } .headerlink { display: none; }
 .formula { break-inside: avoid; }
 """
 
