@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from ._design import Minimum, minimize
     from ._equations import StepEquations, step_equations
     from ._fit import Experiment, Fit, fit
+    from ._frameworks import jax_function, torch_function
     from ._gradient import Gradient, gradient
     from ._linear import StateSpace, inverse_dynamics, linearize
     from ._modes import Matrices, Mode, Modes, matrices, modes, spin_modes
@@ -42,6 +43,7 @@ _LATER = {
     "_design": ["Minimum", "minimize"],
     "_equations": ["StepEquations", "step_equations"],
     "_fit": ["Experiment", "Fit", "fit"],
+    "_frameworks": ["jax_function", "torch_function"],
     "_gradient": ["Gradient", "gradient"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes", "spin_modes"],
@@ -57,8 +59,9 @@ _HOME = {name: module for module, names in _LATER.items() for name in names}
 __all__ = [
     "BodyReading", "Experiment", "Fault", "Fit", "Gradient", "Matrices", "Minimum", "Mode", "Model", "ModelError",
     "Modes", "NotConverged", "Result", "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations",
-    "Uncertainty", "__version__", "fit", "from_text", "gradient", "inverse_dynamics", "linearize", "load", "matrices",
-    "minimize", "modes", "open", "rotations", "run", "spin_modes", "step_equations", "sweep",
+    "Uncertainty", "__version__", "fit", "from_text", "gradient", "inverse_dynamics", "jax_function", "linearize",
+    "load", "matrices", "minimize", "modes", "open", "rotations", "run", "spin_modes", "step_equations", "sweep",
+    "torch_function",
 ]
 
 
