@@ -176,6 +176,37 @@ TEST(FiniteFunctions, AreRefusedWithoutAValueAtTheStart) {
             "accepted");
 }
 
+TEST(FiniteFunctions, DrivesThatStartWithAnInfiniteRateAreRefused) {
+  const auto answer = [](const std::string& model, const std::string& analysis) {
+    try {
+      Simulation s(io::read_model_text("format: 1\n" + model + analysis, "m.yaml", {}));
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  const auto motor = [](const std::string& x) {
+    return kSlide + "loads: {push: {type: linear_motor, joint: j, displacement: '" + x + "'}}\n";
+  };
+  const auto motion = [](const std::string& x) {
+    return "bodies: {a: {mass: 1, inertia: [1, 1, 1], motion: {z: '" + x + "'}}}\n";
+  };
+  const std::string hint =
+      ": starts with an infinite rate. Begin with a finite rate, as 'smoothstep' does.";
+  for (const char* analysis :
+       {"analysis: {duration: 1, step: 1e-1}\n", "analysis: {duration: 1, step: 1e-2}\n",
+        "analysis: {duration: 1, step: 1e-4}\n", "analysis: {duration: 1000, order: 4, step: 1}\n",
+        "analysis: {duration: 1 ms, tolerance: 1e-6}\n"}) {
+    EXPECT_EQ(answer(motor("0.1*sqrt(t)"), analysis), "loads.push" + hint) << analysis;
+    EXPECT_EQ(answer(motor("0.1*t^0.75"), analysis), "loads.push" + hint) << analysis;
+    EXPECT_EQ(answer(motion("2 + sqrt(t)"), analysis), "joints.a.motion" + hint) << analysis;
+    for (const char* fine : {"0.1*t^1.5", "0.1*sin(1e6*t)", "0.1*smoothstep(t, 0, 1e-3)"}) {
+      EXPECT_EQ(answer(motor(fine), analysis), "accepted") << fine << ", " << analysis;
+      EXPECT_EQ(answer(motion(fine), analysis), "accepted") << fine << ", " << analysis;
+    }
+  }
+}
+
 // The integral of 1/|t - 0.503| does not exist, those of the square root of that, of a logarithm
 // and of a narrow pulse do, and 0/0 may have a limit.
 TEST(FiniteFunctions, RunsOverAPoleAreNotTrusted) {

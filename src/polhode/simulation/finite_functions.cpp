@@ -28,6 +28,10 @@ constexpr int kPoleSamples = 512;
 /// that of 1/sqrt(t), by less, and if it is finite, however narrow, it ceases to grow.
 constexpr double kFar = 0x1p-20, kNear = 0x1p-30, kNearest = 0x1p-40, kGrowth = 512.0;
 
+/// Growth of a mean rate from one of these distances to the next, above which a rate is infinite:
+/// those of powers of t below t^0.8 grow by more, finite ones do not grow.
+constexpr double kRateGrowth = 4.0;
+
 /// First time in [from, to] found at which something is not finite.
 template <class Finite>
 std::optional<double> gap_in(double from, double to, const Finite& finite) {
@@ -155,6 +159,30 @@ NotFinite not_finite_at_start(const Model& model) {
       found = {place, "is not a finite number at the start, t = 0"};
   });
   return found;
+}
+
+NotFinite endless_rate_at_start(const Model& model, const System& system, const State& start,
+                                double run) {
+  for (const int i : system.drives()) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
+    PairView view = system.instant(start, ref, start.lambda.data());
+    const auto mean_rate = [&](double part, int row) {
+      view.context.dt = part * run;
+      const Vec6 increment =
+          system.group(ref.group).prescribed(ref.item, view.step(), TimeSide::kBefore).increment;
+      return std::abs(increment[row]) / view.context.dt;
+    };
+    for (int row = 0; row < ref.rows; ++row) {
+      const double far = mean_rate(kFar, row), near = mean_rate(kNear, row);
+      if (!(far > 0.0 && near > kRateGrowth * far && mean_rate(kNearest, row) > kRateGrowth * near))
+        continue;
+      const std::string& name = system.name(ref);
+      const bool load = std::any_of(model.loads.begin(), model.loads.end(),
+                                    [&](const LoadSpec& l) { return l.name == name; });
+      return {(load ? "loads." : "joints.") + name, "starts with an infinite rate"};
+    }
+  }
+  return {};
 }
 
 NotFinite endless_in(const Model& model, double to) {

@@ -22,6 +22,12 @@ struct NotFinite {
 /// The first function of time of a model that is not a finite number at the start.
 [[nodiscard]] NotFinite not_finite_at_start(const Model& model);
 
+/// Names the first drive of a position that starts with an infinite rate, as sqrt(t) does: no
+/// motion follows it, and none of its values tells.
+/// @param run  Length of the run [s].
+[[nodiscard]] NotFinite endless_rate_at_start(const Model& model, const System& system,
+                                              const State& start, double run);
+
 /// Names the first function of time that grows beyond all bounds before a time, so fast that its
 /// integral does not exist. Steps may pass over such a pole. Poles narrower than a 500th of the
 /// time may be missed.

@@ -23,10 +23,18 @@ void refuse_infinite_start(const Model& model) {
   if (!found.place.empty()) throw InputError(found.place, found.text, "Correct its function");
 }
 
+/// Refuses a start at which a drive has no finite rate.
+void refuse_endless_rate(const Model& model, const System& system, const State& start) {
+  const NotFinite found = endless_rate_at_start(model, system, start, model.analysis.duration);
+  if (!found.place.empty())
+    throw InputError(found.place, found.text, "Begin with a finite rate, as 'smoothstep' does");
+}
+
 }  // namespace
 
 Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
   refuse_infinite_start(impl_->model);
+  if (!impl_->statics) refuse_endless_rate(impl_->model, impl_->system, impl_->state);
   impl_->watch(*this);
   impl_->start_consistently();
   if (!impl_->controllers) return;
