@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run judges its own balances and constraints, and says nothing where they hold.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -62,6 +64,23 @@ TEST(Trust, AllowsAnExactMethodRoundOffAndOthersErrorsOfSecondOrder) {
   model.analysis.conserving = true;
   model.analysis.rho_inf = 0.9;
   EXPECT_GT(allowed_drift(model), exact);
+}
+
+TEST(Trust, IsLostToABalanceThatIsNotANumber) {
+  for (const char* step : {"20 ms", "2 ms", "0.2 ms"}) {
+    const io::Overrides overrides = {"analysis.rho_inf=1", std::string("analysis.step=") + step};
+    const Model model = io::read_model_text(kStiff, "trust.yaml", overrides);
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      State state = Simulation(model).state();
+      state.ledger.dissipated.add(bad);
+      Simulation energy(model, state);
+      EXPECT_THAT(energy.run().distrust, Contains(HasSubstr("the balance of energy"))) << step;
+      state = Simulation(model).state();
+      state.ledger.impulse[1].add(bad);
+      Simulation momentum(model, state);
+      EXPECT_THAT(momentum.run().distrust, Contains(HasSubstr("linear momentum"))) << step;
+    }
+  }
 }
 
 TEST(Trust, NamesEachBalanceAndConstraint) {

@@ -15,6 +15,11 @@ constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 /// Largest drift reported for rounding alone.
 constexpr double kReadsAs = 1e-10;
 
+/// Keeps the larger one; what is not a number stays: std::max() would forget it.
+void keep_larger(double& largest, double value) {
+  if (!std::isnan(largest) && !(value <= largest)) largest = value;
+}
+
 std::vector<int> with_work(const System& system) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
@@ -260,8 +265,8 @@ void EnergyLedger::close_step(State& state) {
   l.energy_scale = std::max(l.energy_scale, s.kinetic + std::abs(potential - l.initial_potential));
   l.p_scale = std::max(l.p_scale, s.p_scale);
   l.l_scale = std::max(l.l_scale, s.l_scale);
-  l.energy_drift = std::max(l.energy_drift, std::abs(energy - l.initial_energy - l.put_in.value() +
-                                                     l.dissipated.value()));
+  keep_larger(l.energy_drift,
+              std::abs(energy - l.initial_energy - l.put_in.value() + l.dissipated.value()));
   const double g = system_->gravity().norm();
   l.energy_noise = std::max(l.energy_noise,
                             kRounding * (s.kinetic + std::abs(potential_) + g * vec(s.mr).norm() +
@@ -273,8 +278,8 @@ void EnergyLedger::close_step(State& state) {
     p += dp * dp;
     angular += dl * dl;
   }
-  l.p_drift = std::max(l.p_drift, std::sqrt(p));
-  l.l_drift = std::max(l.l_drift, std::sqrt(angular));
+  keep_larger(l.p_drift, std::sqrt(p));
+  keep_larger(l.l_drift, std::sqrt(angular));
 }
 
 Drifts drifts(const Ledger& l) {
