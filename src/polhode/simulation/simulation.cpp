@@ -24,8 +24,9 @@ void refuse_infinite_start(const Model& model) {
 }
 
 /// Refuses a start at which a drive has no finite rate.
-void refuse_endless_rate(const Model& model, const System& system, const State& start) {
-  const NotFinite found = endless_rate_at_start(model, system, start, model.analysis.duration);
+void refuse_endless_rate(const Model& model, const System& system) {
+  const NotFinite found =
+      endless_rate_at_start(model, system, system.initial_state(), model.analysis.duration);
   if (!found.place.empty())
     throw InputError(found.place, found.text, "Begin with a finite rate, as 'smoothstep' does");
 }
@@ -34,7 +35,7 @@ void refuse_endless_rate(const Model& model, const System& system, const State& 
 
 Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
   refuse_infinite_start(impl_->model);
-  if (!impl_->statics) refuse_endless_rate(impl_->model, impl_->system, impl_->state);
+  if (!impl_->statics) refuse_endless_rate(impl_->model, impl_->system);
   impl_->watch(*this);
   impl_->start_consistently();
   if (!impl_->controllers) return;
