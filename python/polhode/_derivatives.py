@@ -35,7 +35,8 @@ class Uncertainty:
         for panel, (name, value) in zip(panels[:, 0], self.values.items()):
             several = value.ndim > 1 and value.shape[1] > 1
             rows, bands = value.reshape(len(value), -1).T, self.deviation[name].reshape(len(value), -1).T
-            for row, band, axis in zip(rows, bands, "xyz" if several else ("",)):
+            for row, band, number in zip(rows, bands, components(name, len(rows))):
+                axis = number.rpartition(".")[2] if several else ""
                 (line,) = panel.plot(self.time, row, label=axis or None)
                 panel.fill_between(self.time, row - 2 * band, row + 2 * band, color=line.get_color(), alpha=0.25)
             panel.set_ylabel(f"{name} [{self.units[name]}]")
@@ -120,6 +121,8 @@ class Differentiable:
         """
         paths = [wrt] if isinstance(wrt, str) else list(wrt)
         times = np.asarray(self.time)  # type: ignore[attr-defined]
+        if not weights or not paths:
+            raise ValueError("pull_back needs weights of a channel, and parameters")
         names: "list[str]" = []
         columns: "list[Any]" = []
         for channel, given in weights.items():
@@ -144,6 +147,8 @@ class Differentiable:
 
         Raises ModelError for what has no gradient, ValueError for a correlation of another shape, or that is none.
         """
+        from ._measure import unit_of
+
         if isinstance(deviations, Mapping):
             paths, sizes = list(deviations), np.array(list(deviations.values()), dtype=float)
             joint = np.eye(len(paths)) if correlation is None else np.asarray(correlation, dtype=float)
@@ -156,19 +161,15 @@ class Differentiable:
                 raise ValueError("a Fit has its own covariance; leave out correlation")
             paths, covariance = list(deviations.parameters), np.asarray(deviations.covariance)
             sizes = np.sqrt(np.diag(covariance))
+            if not np.all(np.isfinite(covariance)):
+                raise ValueError("the data of the fit do not determine all its parameters, so nothing follows from it")
         values, spread, parts = {}, {}, {}
         for name, (value, by) in self._tangents(paths, channels).items():
             values[name] = value
             spread[name] = np.sqrt(np.maximum(0.0, np.einsum("...i,ij,...j->...", by, covariance, by)))
             parts[name] = {path: by[..., k] * sizes[k] for k, path in enumerate(paths)}
-        units = {name: self._unit_of(name) for name in values}
+        units = {name: unit_of(self, name) for name in values}  # type: ignore[arg-type]
         return Uncertainty(np.asarray(self.time), values, spread, parts, units)  # type: ignore[attr-defined]
-
-    def _unit_of(self, channel: str) -> str:
-        if not channel.startswith("probes."):
-            return str(self.unit(channel))  # type: ignore[attr-defined]
-        name, _, column = channel[len("probes."):].rpartition(".")
-        return str(self.probes[name].unit(column))  # type: ignore[attr-defined]
 
     def _tangents(self, paths: "list[str]", channels: "Sequence[str]") -> "dict[str, tuple[Any, Any]]":
         """Values (T, ...) and derivatives (T, ..., parameters) of channels."""

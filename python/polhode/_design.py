@@ -9,10 +9,11 @@ from typing import Any, Callable, NamedTuple, Optional, Union
 import numpy as np
 
 from ._errors import ModelError, NotConverged
+from ._fit import ranges_of
 from ._gradient import gradients, source_of
 from ._model import Model, Overrides
 from ._result import Result
-from ._run import run
+from ._run import whole_run
 
 #: Value of a design that does not run, in units of the largest cost seen; its slope is zero.
 _WORSE = 10.0
@@ -87,7 +88,7 @@ def minimize(
     parameters: "Mapping[str, float]",
     *,
     cost: "Optional[Cost]" = None,
-    bounds: "Optional[Mapping[str, tuple[float, float]]]" = None,
+    bounds: "Optional[Mapping[str, tuple[Optional[float], Optional[float]]]]" = None,
     limits: "Optional[Mapping[str, tuple[float, float]]]" = None,
     sizes: "Optional[Mapping[str, float]]" = None,
     overrides: Overrides = None,
@@ -101,7 +102,7 @@ def minimize(
     parameters: initial guesses by path, as overrides: {"variables.L": 0.4}.
     cost:       function of the values of the outcomes (n,) and of the parameters (p,), in the order given; returns the
                 cost, its derivatives by the outcomes (n,), and those by the parameters (p,) or None for zeros.
-    bounds:     (lowest, highest) by path.
+    bounds:     (lowest, highest) by path, None for none.
     limits:     (lowest, highest) of outcomes, -inf or inf for none: {"probes.tip.x@max": (-inf, 1.2)}.
     sizes:      typical sizes of parameters by path; the others have the size of their guess, or 1 for zero.
     overrides:  other changes of the model for these runs.
@@ -148,8 +149,8 @@ def minimize(
             return _WORSE * (worst[0] or 1.0), np.zeros(len(names))
 
     value(start)  # what is wrong with the model is wrong here already
-    ranges = [(bounds or {}).get(k, (-np.inf, np.inf)) for k in names]
-    low, high = (np.array([b[i] for b in ranges]) / scale for i in (0, 1))
+    sizes_of_limits = np.abs(runs.at(start)[0][n:])
+    low, high = ranges_of(bounds, parameters, scale)
     way: "dict[str, Any]" = {"method": "L-BFGS-B", "options": {"gtol": tolerance, "ftol": 1e-15,
                                                              "maxfun": max_evaluations, "maxiter": max_evaluations}}
     if limits:
@@ -162,11 +163,14 @@ def minimize(
     x = np.clip(found.x, low, high)
     number, slope = value(x)
     values, _ = runs.at(x)
-    broken = [k for k, v in zip(watched, values[n:])
-              if not limits[k][0] - 1e-6 * abs(limits[k][0]) <= v <= limits[k][1] + 1e-6 * abs(limits[k][1])] \
-        if limits else []
+    broken = []
+    for k, v, size in zip(watched, values[n:], sizes_of_limits):
+        least_value, most_value = limits[k] if limits else (-np.inf, np.inf)
+        slack = 1e-6 * max(size, abs(v))
+        if not least_value - slack <= v <= most_value + slack:
+            broken.append(k)
     message = f"the limit of '{broken[0]}' cannot be met here" if broken else str(found.message)
-    result = run(model, overrides=runs.with_parameters(x), progress=False)
+    result = whole_run(model, runs.with_parameters(x))
     return Minimum(dict(zip(names, (x * scale).tolist())), number, dict(zip(outcomes + watched, values.tolist())),
                    dict(zip(names, (slope / scale).tolist())), result, bool(found.success) and not broken, message,
                    runs.count)

@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import re
+import shlex
 import sys
 import warnings
 from typing import Any, Optional
@@ -131,23 +132,31 @@ def main(arguments: "Optional[list[str]]" = None) -> int:
 def _experiments(given: argparse.Namespace, overrides: "dict[str, Any]", model: Any) -> "list[Any]":
     """Measured channels of each table, checked against the model's results."""
     from ._fit import Experiment
+    from ._measure import series, unit_of
     from ._run import run
 
     short = run(model, overrides={**overrides, "analysis.duration": "1e-9 s"}, progress=False)
+    motion = re.compile(r"bodies\..*\.(position|velocity|angular_velocity)\.[xyz]|joints\..*\.coordinates(\.\d+)?"
+                        r"|probes\..*\.[^.]+")
     experiments = []
     for path in given.tables:
         columns, units = _table(path)
         if units.get("time", "s") != "s":
             raise _Usage(f"{path}:1: time is in {units['time']}; convert it to s")
-        names = given.channel or [name for name in columns if name != "time"]
+        others = [name for name in columns if name != "time"]
+        names = given.channel or [name for name in others if motion.fullmatch(name)] or others
         if not names:
             raise _Usage(f"{path}:1: has no column beside the time")
+        if left := [name for name in others if name not in names and not given.channel]:
+            print(f"{path}: {len(left)} columns are no positions or velocities and are left out, such as {left[0]}; "
+                  "name them with --channel to use them", file=sys.stderr)
         for name in names:
             if name not in columns:
                 near = _native.closest(name, list(columns))
                 raise _Usage(f"{path}:1: has no column '{name}'" + (f". Did you mean '{near}'?" if near else ""))
-            unit = short.unit(name)
-            if np.ndim(short[name]) > 1 and short[name].shape[1] != 1:
+            found = series(short, name)[1]
+            unit = unit_of(short, name)
+            if found.ndim > 1 and found.shape[1] != 1:
                 raise _Usage(f"{path}:1: '{name}' is a vector; name a component")
             if name in units and units[name] not in (unit, *unit.split(" or ")):
                 raise _Usage(f"{path}:1: '{name}' is in {units[name]}; convert it to {unit}")
@@ -183,6 +192,9 @@ def _fit(given: argparse.Namespace) -> int:
     for name in bounds:
         if name not in guesses:
             raise _Usage(f"--bound {name}: is not among the parameters of --with")
+    if model.analysis.get("type", "dynamics") != "dynamics":
+        raise _Usage(f"{given.model} has no motion in time to compare: its analysis is of type "
+                     f"'{model.analysis.get('type')}'")
     model.check({**overrides, **guesses})
     experiments = _experiments(given, overrides, model)
 
@@ -222,13 +234,23 @@ def _misfits(found: Any, deviations: "dict[str, float]") -> "dict[str, float]":
 
 
 def _print(found: Any, way: str, why: str, said: "list[str]", given: argparse.Namespace) -> None:
+    from ._measure import unit_of
+
     deviations = {k: float(v) for k, v in _pairs(given.deviation, "--deviation", "").items()}
     misfits, errors = _misfits(found, deviations), found.errors
+
+    def finite(value: Any) -> Any:
+        """A number, or null in JSON."""
+        if isinstance(value, list):
+            return [finite(v) for v in value]
+        return value if np.isfinite(value) else None
+
     names = list(found.parameters)
     if given.json:
-        print(json.dumps({"parameters": found.parameters, "errors": errors, "covariance": found.covariance.tolist(),
+        print(json.dumps({"parameters": found.parameters, "errors": {k: finite(v) for k, v in errors.items()},
+                          "covariance": finite(found.covariance.tolist()),
                           "singular_values": found.singular_values.tolist(), "residuals": misfits, "runs": found.runs,
-                          "jacobian": way, "warnings": said}, indent=2))
+                          "converged": found.converged, "jacobian": way, "warnings": said}, indent=2))
         return
     width = max(len(name) for name in [*names, *misfits])
     for name in names:
@@ -239,8 +261,9 @@ def _print(found: Any, way: str, why: str, said: "list[str]", given: argparse.Na
         print(f"largest correlation {found.correlation[i, j]:.3f}: {names[min(i, j)]}, {names[max(i, j)]}")
     print("root mean square of what is left:")
     for name, size in misfits.items():
-        print(f"{name:{width}}  {size:.3g} {found.result.unit(name)}")
+        print(f"{name:{width}}  {size:.3g} {unit_of(found.result, name)}")
     print(f"{found.runs} runs, derivatives: {way}" + (f", because {why}" if why else ""))
     for line in said:
         print(f"warning: {line}", file=sys.stderr)
-    print("polhode run " + given.model + "".join(f" --set {k}={v:.10g}" for k, v in found.parameters.items()))
+    chosen = [*given.set, *(f"{k}={v:.10g}" for k, v in found.parameters.items())]
+    print(shlex.join(["polhode", "run", given.model, *(word for text in chosen for word in ("--set", text))]))

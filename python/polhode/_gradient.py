@@ -102,6 +102,7 @@ def tangents(source: Source, channels: "Sequence[str]", times: Any, wrt: "Sequen
 
     of = _at_times(channels, times)
     _, found = _differentiate(source, of, list(wrt), True, False, True)
+    _warn(found[-1][8])
     shape = (len(times), len(channels))
     values = np.array([outcome[1] for outcome in found]).reshape(shape)
     return values, np.array([outcome[4] for outcome in found]).reshape(*shape, len(wrt))
@@ -114,8 +115,17 @@ def pulled_back(source: Source, channels: "Sequence[str]", times: Any, weights: 
 
     of = _at_times(channels, times)
     factors = np.asarray(weights, dtype=float).ravel().tolist()
+    if not np.all(np.isfinite(factors)):
+        raise ValueError("the weights are not finite numbers")
     _, found = _differentiate(source, of, list(wrt), False, False, False, factors)
+    _warn(found[0][8])
     return np.array(found[0][4])
+
+
+def _warn(doubts: "list[str]") -> None:
+    """Doubts about derivatives as warnings in the caller of a public function."""
+    for doubt in doubts:
+        warnings.warn(doubt, stacklevel=4)
 
 
 @overload

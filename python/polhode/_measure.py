@@ -34,11 +34,12 @@ _WHOLE: "dict[str, Callable[[Any, Any], Any]]" = {
 }
 
 
-def _series(result: Result, channel: str) -> "tuple[Any, Any]":
-    """Times and values (T, ...) of a channel, of a probe, or of the size of a vector as CHANNEL.size."""
+def series(result: Result, channel: str) -> "tuple[Any, Any]":
+    """Times and values (T, ...) of a channel, of a probe's column, of the size of a vector as CHANNEL.size, or of one
+    of several numbers as CHANNEL.1."""
     above, _, last = channel.rpartition(".")
     if last == "size" and above:
-        t, vectors = _series(result, above)
+        t, vectors = series(result, above)
         if vectors.ndim != 2:
             raise KeyError(f"'{above}' is no vector, so it has no size")
         return t, np.linalg.norm(vectors, axis=1)
@@ -48,12 +49,27 @@ def _series(result: Result, channel: str) -> "tuple[Any, Any]":
         if name not in probes:
             near = _native.closest(name, list(probes))
             raise KeyError(f"there is no probe '{name}'" + (f". Did you mean '{near}'?" if near else ""))
-        table = probes[name]
-        return np.asarray(table["t"]), np.asarray(table[column])
+        return np.asarray(probes[name]["t"]), np.asarray(probes[name][column])
+    if last.isdigit() and above:  # a number of the coordinates of a joint
+        t, numbers = series(result, above)
+        if numbers.ndim != 2 or int(last) >= numbers.shape[1]:
+            raise KeyError(f"'{above}' has no number {last}")
+        return t, numbers[:, int(last)]
     found = result[channel]
     if isinstance(found, Group):
         raise KeyError(f"'{channel}' is a group: name one of its channels: {', '.join(list(found)[:8])}")
     return np.asarray(result.time), np.asarray(found)
+
+
+def unit_of(result: Result, channel: str) -> str:
+    """Unit of a channel or of a column of a probe."""
+    if channel.endswith(".size"):
+        return unit_of(result, channel[:-len(".size")])
+    if channel.startswith("probes."):
+        name, _, column = channel[len("probes."):].rpartition(".")
+        return result.probes[name].unit(column)
+    above, _, last = channel.rpartition(".")
+    return result.unit(above if last.isdigit() else channel)
 
 
 def _parts(name: str, form: str, value: Any) -> "dict[str, float]":
@@ -61,7 +77,7 @@ def _parts(name: str, form: str, value: Any) -> "dict[str, float]":
     array = np.asarray(value)
     if array.ndim == 0:
         return {form.format(name): float(array)}
-    letters = {3: "xyz", 4: "wxyz"}.get(array.size, "")
+    letters = "" if name.endswith(("coordinates", "rates")) else {3: "xyz", 4: "wxyz"}.get(array.size, "")
     labels = list(letters) if letters and array.ndim == 1 else [str(k) for k in range(array.size)]
     return {form.format(f"{name}.{c}"): float(x) for c, x in zip(labels, array.ravel())}
 
@@ -76,27 +92,27 @@ def _number(text: str, of: str) -> float:
 def measure(result: Result, text: str) -> "dict[str, float]":
     """Numbers of a result by name: of a channel its last value, or of a function of a channel over time.
 
-    Functions: max, min, mean and rms (over time), range, final, at(CHANNEL, TIME) between frames linearly,
-    first(CHANNEL > VALUE): the first time, by linear interpolation, NaN if there is none. A vector gives a number for
-    each component, CHANNEL.size its length; probes.NAME.COLUMN a column of a probe. Raises KeyError for an unknown
-    channel, ValueError for an unknown function.
+    Functions: max, min, mean and rms (over time), range, final, at(CHANNEL, TIME) between frames linearly, NaN outside
+    of the run, first(CHANNEL > VALUE): the first time, by linear interpolation, NaN if there is none. A vector gives a
+    number for each component, CHANNEL.size its length; probes.NAME.COLUMN a column of a probe. Raises KeyError for an
+    unknown channel, ValueError for an unknown function.
     """
     call = _CALL.fullmatch(text)
     if not call:
         name = text.strip()
-        return _parts(name, "{}", _series(result, name)[1][-1])
+        return _parts(name, "{}", series(result, name)[1][-1])
     function, inside = call.group(1), call.group(2)
     if function in _WHOLE:
         name = inside.strip()
-        t, values = _series(result, name)
+        t, values = series(result, name)
         return _parts(name, f"{function}({{}})", _WHOLE[function](t, values))
     if function == "at":
         name, comma, when = (part.strip() for part in inside.rpartition(","))
         if not comma:
             raise ValueError(f"'{text}': write at(CHANNEL, TIME)")
-        t, values = _series(result, name)
+        t, values = series(result, name)
         flat = values.reshape(len(t), -1)
-        at = [np.interp(_number(when, text), t, column) for column in flat.T]
+        at = [np.interp(_number(when, text), t, column, np.nan, np.nan) for column in flat.T]
         return _parts(name, f"at({{}}, {when})", np.array(at).reshape(values.shape[1:]))
     if function == "first":
         return {text.strip(): _first(result, text, inside)}
@@ -110,7 +126,7 @@ def _first(result: Result, text: str, inside: str) -> float:
     parts = _FIRST.fullmatch(inside.strip())
     if not parts:
         raise ValueError(f"'{text}': write first(CHANNEL > VALUE)")
-    t, values = _series(result, parts.group(1).strip())
+    t, values = series(result, parts.group(1).strip())
     if values.ndim > 1:
         raise ValueError(f"'{text}': name a component or .size of the vector")
     over = (values - _number(parts.group(3), text)) * (1 if parts.group(2) == ">" else -1)

@@ -64,6 +64,14 @@ def run(
     return result
 
 
+def whole_run(model: Model, overrides: Overrides) -> Result:
+    """A run of a study. Raises KeyboardInterrupt if Ctrl-C stops it: its results would be taken for whole ones."""
+    result = run(model, overrides=overrides, progress=False)
+    if result.end == "interrupted":
+        raise KeyboardInterrupt
+    return result
+
+
 def _report(ledger: "dict[str, Any]") -> None:
     """Sends the chosen methods to logging, and warnings of the run to the module warnings."""
     for line in ledger["narration"].splitlines():

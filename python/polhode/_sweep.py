@@ -19,7 +19,7 @@ from ._gradient import source_of
 from ._measure import measure
 from ._model import Model
 from ._result import Result
-from ._run import run
+from ._run import whole_run
 
 _FIGURES = ("t", "steps", "newton_iterations", "energy_drift", "constraint_residual_max", "wall_time_s", "result_hash")
 
@@ -56,7 +56,7 @@ def _one(task: "tuple[Model, dict[str, Any], Any, list[str]]") -> "dict[str, Any
     model, point, outputs, outcomes = task
     row: "dict[str, Any]" = {**point, "message": ""}
     try:
-        result = run(model, overrides=point, progress=False)
+        result = whole_run(model, point)
         row.update({name: result.ledger[name] for name in _FIGURES})
         for text in () if callable(outputs) else outputs:
             row.update(measure(result, text))

@@ -134,7 +134,10 @@ def _sweep(given: argparse.Namespace) -> int:
     if given.plot:
         from ._sweep_plot import draw
 
-        draw(table, list(parameters), given.plot)
+        try:
+            draw(table, list(parameters), given.plot)
+        except ValueError as error:
+            print(f"{given.plot}: {error}", file=sys.stderr)
     failed = int((table.message != "").sum())
     faults = f", {failed} of them failed: see the column message" if failed else ""
     print(f"{given.table}: {len(table)} runs{faults}")

@@ -11,7 +11,8 @@ from ._sweep import _FIGURES
 
 
 def draw(table: Any, parameters: "list[str]", file: str) -> None:
-    """Draws all outputs of a table: over one parameter as points on a line, over two as a map of colours."""
+    """Draws all outputs of a table: over one parameter as points on a line, over two as a map of colours.
+    Raises ValueError if there is nothing to draw."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -19,6 +20,8 @@ def draw(table: Any, parameters: "list[str]", file: str) -> None:
 
     outputs = [name for name in table.columns if name not in (*parameters, "message", *_FIGURES)
                and np.issubdtype(table[name].dtype, np.number)]
+    if not outputs:
+        raise ValueError("no run has a number to draw: see the column message")
     figure, panels = pyplot.subplots(len(outputs), 1, squeeze=False, layout="constrained",
                                      figsize=(6.4, 1.0 + 2.6 * len(outputs)))
     for panel, name in zip(panels[:, 0], outputs):

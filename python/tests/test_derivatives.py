@@ -4,6 +4,7 @@
 import math
 import pathlib
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -128,7 +129,7 @@ def spring(**variables: float) -> polhode.Model:
     return m
 
 
-def measured(m: polhode.Model, noise: float = 0.0, **overrides: float) -> "dict[str, object]":
+def measured(m: polhode.Model, noise: float = 0.0, **overrides: float) -> "dict[str, Any]":
     r = polhode.run(m, overrides={f"variables.{k}": v for k, v in overrides.items()}, progress=False)
     z = np.array(r["bodies.b.position.z"])
     return {"time": np.array(r.time), "bodies.b.position.z": z + np.random.default_rng(7).normal(0, noise, len(z))}
@@ -137,9 +138,20 @@ def measured(m: polhode.Model, noise: float = 0.0, **overrides: float) -> "dict[
 def test_several_experiments_tell_apart_what_one_does_not() -> None:
     m = spring()
     guess = {"variables.k": 30.0, "variables.m": 1.3, "variables.c": 1.0}
-    with pytest.warns(UserWarning, match="do not tell these parameters apart: variables.k, variables.m, variables.c"):
-        alone = polhode.fit(m, measured(m), guess, jacobian="exact")
-    assert alone.singular_values[-1] < 1e-10 * alone.singular_values[0]
+    lost = "do not tell these parameters apart, or do not depend on them: variables.k, variables.m, variables.c"
+    for jacobian in ("differences", "exact"):
+        with pytest.warns(UserWarning, match=lost):
+            alone = polhode.fit(m, measured(m), guess, jacobian=jacobian)
+        assert list(alone.errors.values()) == [math.inf] * 3 and np.all(np.isnan(alone.correlation))
+        with pytest.raises(ValueError, match="do not determine all its parameters"):
+            alone.result.uncertainty(alone, ["bodies.b.position.z"])
+    one = {"time": [0.5], "bodies.b.position.z": [1.2]}
+    with pytest.warns(UserWarning, match="variables.k, variables.c"):
+        polhode.fit(m, one, {"variables.k": 30.0, "variables.c": 1.0}, jacobian="exact")
+    with pytest.warns(UserWarning, match="depend on them: bodies.b.inertia.0. Fix"):
+        still = polhode.fit(m, measured(m, noise=0.01), {"variables.k": 39.0, "bodies.b.inertia.0": 1.0},
+                            jacobian="exact")
+    assert still.errors["bodies.b.inertia.0"] == math.inf and still.errors["variables.k"] < 0.1
     # A known mass on top: the ratio k/m changes by a known part.
     m.add_body("weight", mass="w", inertia=[1, 1, 1], position=[0, 0, 1.5])
     m.variables["w"] = 1e-6
@@ -170,16 +182,84 @@ def test_deviations_and_priors_weigh_as_bayes_says() -> None:
     assert np.mean(plain.residuals ** 2) == pytest.approx(1, abs=0.3)
     with pytest.raises(ValueError, match="has no standard deviation"):
         polhode.fit(m, data, {"variables.k": 39.0}, priors={"variables.k": prior})
-    with pytest.raises(ValueError, match="priors name 'variables.c'"):
+    with pytest.raises(ValueError, match="'variables.c' has a prior and is not a parameter"):
         polhode.fit(m, data, {"variables.k": 39.0}, deviations={"bodies.b.position.z": 1},
                     priors={"variables.c": (1, 1)})
     with pytest.raises(ValueError, match="must be positive"):
         polhode.fit(m, data, {"variables.k": 39.0}, deviations={"bodies.b.position.z": 0})
     with pytest.raises(ValueError, match="the data have no 'time'"):
         polhode.fit(m, {"bodies.b.position.z": [1]}, {"variables.k": 39.0})
+    with pytest.raises(ValueError, match="the guess 39 of 'variables.k' is outside of its bounds 40 to inf"):
+        polhode.fit(m, data, {"variables.k": 39.0}, bounds={"variables.k": (40, None)})
+    with pytest.raises(ValueError, match="bounds name 'variables.kk'"):
+        polhode.fit(m, data, {"variables.k": 39.0}, bounds={"variables.kk": (40, None)})
     spread = both.result.uncertainty(both, ["bodies.b.position.z"]).deviation["bodies.b.position.z"]
     slope = both.result.push_forward({"variables.k": 1.0}, ["bodies.b.position.z"])["bodies.b.position.z"]
     assert spread == pytest.approx(np.abs(slope) * both.errors["variables.k"], abs=1e-12)
+
+
+Z = "bodies.b.position.z"
+
+
+@pytest.mark.parametrize(("data", "message"), [
+    ({"time": [], Z: []}, "the data have no rows"),
+    ({"time": [0, 0.1, 0.2], Z: [1, math.nan, 1]}, f"'{Z}' is not a finite number in row 2"),
+    ({"time": [0, math.nan], Z: [1, 1]}, "'time' is not a finite number in row 2"),
+    ({"time": [0, 2.5], Z: [1, 1]}, "the data go from 0 to 2.5 s, and 'bodies.b.position.z' from 0 to 2 s"),
+    ({"time": [0, 1], "bodies.b.position": [1, 1]}, "name a component"),
+    ({"time": [0, 1]}, "no channel beside 'time'"),
+    ([{"time": [0, 1], Z: [1, 1]}, polhode.Experiment({"time": [0, 1], Z: [1, 1]}, {"variables.k": 20})],
+     "'variables.k' is fitted, so an experiment cannot set it"),
+    ([(1, 2)], "data must be a table by channel"),
+    ([], "there are no data"),
+])
+def test_data_that_are_none_are_named(data: Any, message: str) -> None:
+    for jacobian in ("differences", "exact", "adjoint"):
+        with pytest.raises(ValueError, match=message):
+            polhode.fit(spring(), data, {"variables.k": 30.0}, jacobian=jacobian)
+
+
+@pytest.mark.parametrize("jacobian", ["differences", "exact", "adjoint"])
+def test_far_guesses_bounds_and_coarse_frames(jacobian: str) -> None:
+    m = spring()
+    data = measured(m, noise=0.01)
+    far = polhode.fit(m, polhode.Experiment(data), {"variables.k": 100.0, "variables.c": 0.05}, jacobian=jacobian,
+                      bounds={"variables.c": (0, None)})
+    assert far.converged and abs(far.parameters["variables.k"] - 40) < 5 * far.errors["variables.k"]
+    with pytest.warns(UserWarning, match="'variables.k' ends at its bound"):
+        polhode.fit(m, data, {"variables.k": 35.0}, bounds={"variables.k": (30, 38)}, jacobian=jacobian)
+    m.output = {"every": "0.5 s"}
+    with pytest.warns(UserWarning, match="the frames of 'bodies.b.position.z' are too far apart"):
+        polhode.fit(m, measured(spring()), {"variables.k": 39.0}, jacobian=jacobian)
+
+
+def test_channels_of_different_units_count_alike_and_have_their_own_errors() -> None:
+    m, random = spring(), np.random.default_rng(2)
+    r = polhode.run(m, progress=False)
+    found, errors = [], []
+    for _ in range(60):
+        data = {"time": np.array(r.time)}
+        for name, sigma in ((Z, 1e-3), ("joints.slide.coordinates", 0.05), ("bodies.b.position.x", 1e-3)):
+            data[name] = np.array(r[name]) + sigma * random.normal(size=r[name].shape)
+        fit = polhode.fit(m, data, {"variables.k": 39.0}, jacobian="exact")
+        found.append(fit.parameters["variables.k"])
+        errors.append(fit.errors["variables.k"])
+    assert np.mean(errors) == pytest.approx(np.std(found), rel=0.3)  # 3 of 1/sqrt(120)
+
+
+def test_probes_are_fitted_too_and_a_stopped_run_stops_the_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    m = spring()
+    m.output = {"probes": {"tip": {"body": "b", "point": [0, 0, 0.1]}}}
+    r = polhode.run(m, progress=False)
+    data = {"time": np.array(r.time)[::3], "probes.tip.z": np.array(r.probes["tip"]["z"])[::3]}
+    for jacobian in ("differences", "exact", "adjoint"):
+        fit = polhode.fit(m, data, {"variables.k": 37.0}, jacobian=jacobian)
+        assert fit.parameters["variables.k"] == pytest.approx(40, rel=1e-5)
+    stopped = polhode.run(m, progress=False)
+    stopped._ledger = {**(stopped._ledger or {}), "end": "interrupted"}
+    monkeypatch.setattr("polhode._run.run", lambda *_, **__: stopped)
+    with pytest.raises(KeyboardInterrupt):
+        polhode.fit(m, data, {"variables.k": 37.0})
 
 
 def test_an_exact_fit_takes_fewer_runs_than_one_by_differences() -> None:
@@ -213,6 +293,10 @@ def test_a_limit_of_an_outcome_is_kept_and_bounds_too() -> None:
                              limits={"bodies.ball.position.x@end": (-math.inf, 1.2)})
     assert found.converged and found.parameters["bodies.ball.velocity.0"] == pytest.approx(2.4, abs=1e-4)
     assert found.parameters["bodies.ball.velocity.2"] == pytest.approx(5, abs=1e-4)
+    level = polhode.minimize(throw(), "bodies.ball.position.x@end", {"bodies.ball.velocity.2": 4.0},
+                             limits={"bodies.ball.velocity.z@end": (0, math.inf)},
+                             bounds={"bodies.ball.velocity.2": (0, 9)})
+    assert level.converged and level.outcomes["bodies.ball.velocity.z@end"] > -1e-9
     unmet = polhode.minimize(throw(), "bodies.ball.position.z@end", {"bodies.ball.velocity.2": 4.0},
                              bounds={"bodies.ball.velocity.2": (0, 5)}, max_evaluations=30,
                              limits={"bodies.ball.position.x@end": (5, 6)})

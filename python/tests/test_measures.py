@@ -41,7 +41,7 @@ def test_measures_of_a_throw_are_its_closed_forms(step: str, order: float) -> No
     assert of(f"at({z}, 0.25)") == pytest.approx(1 + v / 4 - g / 32, abs=g / 8 * 0.05 ** 2)
     assert of(f"first({z} > 1.5)") == pytest.approx((v - math.sqrt(v * v - g)) / g, abs=order)
     assert of("first(bodies.ball.velocity.z < 0)") == pytest.approx(v / g, abs=1e-12)
-    assert math.isnan(of(f"first({z} > 3)"))
+    assert math.isnan(of(f"first({z} > 3)")) and math.isnan(of(f"at({z}, 0.6)")) and math.isnan(of(f"at({z}, -1)"))
     assert of(f"first({z} > 0.5)") == 0
     assert of("mean(probes.ball.z)") == pytest.approx(of(f"mean({z})"), abs=1e-12)
     assert measure(r, "max(bodies.ball.position)").keys() == {f"max(bodies.ball.position.{c})" for c in "xyz"}
@@ -129,6 +129,30 @@ def test_the_fit_command_finds_what_was_measured(tmp_path: pathlib.Path, capsys:
     assert _fit_command.main([*words[:2], *words[1:], "--jacobian", "adjoint", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["parameters"] == pytest.approx({"variables.k": 40, "variables.c": 0.8}, rel=1e-4)
+
+
+def test_the_fit_command_says_what_it_does_not_know(tmp_path: pathlib.Path,
+                                                    capsys: pytest.CaptureFixture[str]) -> None:
+    m = spring()
+    model, table = tmp_path / "m.yaml", tmp_path / "t.csv"
+    m.save(model)
+    data = measured(m)
+    table.write_text("t [s],bodies.b.position.z [m],energy.total [J],bodies.b.orientation.w [-]\n"
+                     + "".join(f"{t!r},{z!r},7,1\n" for t, z in np.array([*zip(*data.values())]).tolist()))
+    words = [str(model), str(table), "--with", "k=36,c=1.2,m=1.3"]
+    assert _fit_command.main([*words, "--json"]) == 0
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert set(found["errors"].values()) == {None} and found["covariance"] == [[None] * 3] * 3
+    assert "variables.k, variables.c, variables.m" in found["warnings"][0]
+    assert "2 columns are no positions or velocities and are left out, such as energy.total" in said.err
+    assert _fit_command.main([*words[:2], "--with", "k=36", "--set", "m=1.1"]) == 0
+    assert f"polhode run {model} --set m=1.1 --set variables.k=" in capsys.readouterr().out
+    assert _fit_command.main([*words, "--set", "analysis.duration=1"]) == 2
+    assert "the data go from 0 to 2 s" in capsys.readouterr().err
+    m.analysis = {"type": "statics"}
+    m.save(model)
+    assert _fit_command.main(words) == 2 and "is of type 'statics'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("words", "header", "message"), [
