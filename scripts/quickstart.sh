@@ -36,5 +36,5 @@ Where to look:
 Next:
   $polhode examples          what else there is
   $polhode run --help        options of a run
-  README.md                  a tour of five minutes
+  docs/tour.md               a tour of five minutes
 END

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every package that the examples, the notebooks, the pages and the Python package import is installed by `pip install '.[all]'`."""
+"""Every package that the examples, the notebooks, the pages and the Python package import is installed by `pip install '.[all]'`; large ones
+have an extra of their own, `[jax]`, which the page of the package names."""
 
 import ast
 import json
@@ -36,17 +37,20 @@ def main():
     settings = (ROOT / "pyproject.toml").read_text()
     lists = re.search(r"^dependencies = \[(.*?)\]", settings, re.M | re.S)[1] + re.search(r"^all = \[(.*?)\]", settings, re.M | re.S)[1]
     installed = {re.match(r"[\w-]+", name)[0].replace("-", "_") for name in re.findall(r'"([^"]+)"', lists)}
+    shown = (ROOT / "docs/python/README.md").read_text()
+    extras = {name for name, content in re.findall(r'^(\w+) = \["(\w+)"\]', settings, re.M) if name == content}
+    for name in extras:
+        assert f"polhode[{name}]" in shown, f"docs/python/README.md does not name the extra [{name}]"
     found = {}
     for path, text in programs():
         for name in imported(text):
             found.setdefault(name, set()).add(str(path.relative_to(ROOT)))
     assert {"numpy", "h5py", "matplotlib"} <= found.keys(), f"only {sorted(found)} are found: are the programs read?"
-    lost = [f"'{name}', which {sorted(places)[0]} imports" for name, places in sorted(found.items()) if name not in installed]
+    lost = [f"'{name}', which {sorted(places)[0]} imports" for name, places in sorted(found.items()) if name not in installed | extras]
     assert not lost, f"pyproject.toml: [all] lacks {', '.join(lost)}. Add it."
-    shown = (ROOT / "docs/python/README.md").read_text()
     unnamed = [name for name in installed - {"numpy"} if not re.search(rf"\[all\]'.*\b{name}\b", shown, re.I)]
     assert not unnamed, f"docs/python/README.md does not say that [all] installs {', '.join(unnamed)}"
-    print(f"[all] installs {', '.join(sorted(found))}")
+    print(f"[all] installs {', '.join(sorted(found.keys() - extras))}; apart: {', '.join(sorted(extras))}")
 
 
 main()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the models and commands of the quick starts unchanged, compares what README shows with what the program prints,
+"""Runs the models and commands of the quick starts unchanged, compares what README and the tour show with what the program prints,
 and checks every complete model of the other pages.
 
 Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
@@ -63,9 +63,9 @@ def same_output(printed, shown):
     return re.fullmatch("".join(pattern), "".join(" ".join(line.split()) + "\n" for line in printed)) is not None
 
 
-def compare_readme():
-    """Faults of README: consoles whose commands print other lines than those shown."""
-    text = (ROOT / "README.md").read_text()
+def compare_consoles(page, count):
+    """Faults of a page with a model and `count` consoles: commands that print other lines than those shown."""
+    text = (ROOT / page).read_text()
     model = re.search(r"^```yaml\n(format: .*?)^```$", text, re.M | re.S)[1]
     faults = []
     with tempfile.TemporaryDirectory() as folder:
@@ -77,11 +77,11 @@ def compare_readme():
             done = subprocess.run(command, shell=True, cwd=folder, env={**os.environ, "PATH": path}, check=False, timeout=240,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
             if not same_output(done.stdout.splitlines(), shown.splitlines()):
-                faults.append(f"README.md: '{command}' prints other lines\n{done.stdout}")
+                faults.append(f"{page}: '{command}' prints other lines\n{done.stdout}")
             drift = re.search(r"energy drift +(\S+)", done.stdout)
             if drift and float(drift[1]) > 1e-13:
-                faults.append(f"README.md says that the drift is a few 1e-15, and '{command}' prints {drift[1]}")
-    return faults + ([] if len(consoles) == 4 else [f"README.md has {len(consoles)} consoles"])
+                faults.append(f"{page}: the drift is not of round-off, and '{command}' prints {drift[1]}")
+    return faults + ([] if len(consoles) == count else [f"{page} has {len(consoles)} consoles"])
 
 
 def check_models(page):
@@ -115,8 +115,9 @@ def main(wanted):
         count, faults = run_page(page)
         print(f"{page.name}: {count} commands, {len(faults)} faults")
         problems += faults + ([f"{page.name} has no commands"] if count == 0 else [])
-    if not wanted or "README" in wanted:
-        problems += compare_readme()
+    for page, count in (("README.md", 1), ("docs/tour.md", 4)):
+        if not wanted or pathlib.Path(page).stem in wanted:
+            problems += compare_consoles(page, count)
     others = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     checked = 0
     for page in others:

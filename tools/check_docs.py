@@ -4,7 +4,7 @@
 * Every kind in a registry has a row in its reference page, and every row has its kind.
 * Every path of the repository that a page names in `backticks` exists.
 * The target of every link from a page to a file of the repository exists.
-* The C++ program of the README is that of tests/consumer, which is built and run against the installed library.
+* The C++ program of the tour is that of tests/consumer, which is built and run against the installed library.
 * No file under src/ has more than 500 lines; above 300 there is a notice.
 """
 import pathlib
@@ -105,11 +105,11 @@ def check_program(problems):
     def lines(text):
         return [line.rstrip() for line in text.splitlines() if line.strip()]
 
-    shown = re.search(r"```cpp\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
+    shown = re.search(r"```cpp\n(.*?)```", (ROOT / "docs/tour.md").read_text(), re.S)
     built = lines((ROOT / "tests/consumer/main.cpp").read_text())
     wanted = lines(shown[1])[:-1] if shown else []
     if not wanted or not any(built[i:i + len(wanted)] == wanted for i in range(len(built))):
-        problems.append("README.md: its C++ program is not that of tests/consumer/main.cpp. Copy it from there.")
+        problems.append("docs/tour.md: its C++ program is not that of tests/consumer/main.cpp. Copy it from there.")
 
 
 def main():

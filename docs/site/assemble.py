@@ -24,7 +24,7 @@ import tables  # noqa: E402
 from docutils import nodes  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TOP = {"README.md": "tour.md", "ARCHITECTURE.md": "architecture.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
+TOP = {"README.md": "overview.md", "ARCHITECTURE.md": "architecture.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
        "docs/README.md": "index.md", "docs/index.md": "index.md", "examples/README.md": "gallery.md"}
 FENCE = re.compile(r"^\s*(`{3,}|~{3,}|:{3,})")
 LINK = re.compile(r"(!?\[(?:[^\[\]]|\[[^\[\]]*\])*\])\(<?([^)>\s]+)>?((?:\s+\"[^\"]*\")?)\)")

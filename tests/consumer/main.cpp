@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program of the README: a model made in code, run, and compared with what is known of it.
+// The program of docs/tour.md: a model made in code, run, and compared with what is known of it.
 #include <iostream>
 #include <numbers>
 
@@ -45,7 +45,7 @@ int main() {
   std::cout << "angle " << angle << " rad, x " << x << " m, carried "
             << simulation.joint("hinge").force.z() << " N, moves with "
             << simulation.balance().kinetic << " J\n";
-  // README ends here. The test also checks the force of the hinge where the rod turns back, at
+  // The tour ends here. The test also checks the force of the hinge where the rod turns back, at
   // rest.
   const double weight = 9.81 * 2700.0 * 4e-4;
   bool refused = false;
