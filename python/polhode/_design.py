@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, Callable, NamedTuple, Optional, Union
 
@@ -60,6 +61,10 @@ class _Evaluations:
             slopes = np.array([[g.by[path] for path in self.names] for g in found]) * self.scale
             self._at, self._found = np.array(x), (values, slopes)
         return self._found
+
+    def forget(self) -> None:
+        """Lets the next evaluation run anew, with its warnings."""
+        self._at = None
 
     def safely_at(self, x: Any) -> "tuple[Any, Any]":
         """As at(), but those of the last design that did run for one that does not."""
@@ -159,8 +164,11 @@ def minimize(
                                          jac=lambda x: runs.safely_at(x)[1][n:])
         way = {"method": "SLSQP", "constraints": [constraint],
                "options": {"ftol": 1e-4 * tolerance, "maxiter": max_evaluations}}
-    found = search(safely, start, jac=True, bounds=list(zip(low, high)), **way)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # doubts about derivatives on the way; those at the end count
+        found = search(safely, start, jac=True, bounds=list(zip(low, high)), **way)
     x = np.clip(found.x, low, high)
+    runs.forget()
     number, slope = value(x)
     values, _ = runs.at(x)
     broken = []

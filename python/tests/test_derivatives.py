@@ -4,6 +4,7 @@
 import math
 import pathlib
 import pickle
+import warnings
 from typing import Any
 
 import numpy as np
@@ -330,3 +331,19 @@ def test_points_of_probes_have_deviations_too() -> None:
     m.output = {"probes": {"edge": {"body": "ball", "point": [0.1, 0, 0]}}}
     u = polhode.run(m, progress=False).uncertainty({"bodies.ball.velocity.0": 0.1}, ["probes.edge.x"])
     assert u.deviation["probes.edge.x"] == pytest.approx(0.1 * u.time, abs=1e-12) and u.units["probes.edge.x"] == "m"
+
+
+def test_doubts_of_a_design_are_said_once_at_the_end() -> None:
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": "3 s", "step": "20 ms"})
+    before = "ground"
+    for k in range(3):
+        m.add_body(f"b{k}", shape=polhode.Box(0.3, 0.02, 0.02), density=1000, position=[0.15 + 0.3 * k, 0, 0])
+        m.add_joint(f"j{k}", "spherical", [before, f"b{k}"], at=[0.3 * k, 0, 0])
+        before = f"b{k}"
+    m.bodies["b2"].angular_velocity = [0, 2, 3]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = polhode.minimize(m, "bodies.b2.position.z", {"gravity.2": -9.81}, max_evaluations=4,
+                                 bounds={"gravity.2": (-10, -9.5)})
+    about = [w for w in caught if "bodies.b2.position.z" in str(w.message) and issubclass(w.category, UserWarning)]
+    assert found.evaluations > 3 and len(about) <= 2
