@@ -20,7 +20,7 @@ _SIZED = re.compile(r'<mo ([^>]*minsize="[^"]*"[^>]*)>\\?([^<]+)</mo>')
 
 
 def _grown(match):
-    """A bracket of a given size: browsers stretch it only as a fence whose side they are told. \\Big ones stand around sums and
+    """A bracket of a given size, as a fence with its side, since browsers stretch no other. \\Big ones are around sums and
     fractions and cover them."""
     attributes = re.sub(r'\s*(?:stretchy|fence)="[^"]*"', "", match[1]).strip()
     attributes = attributes.replace(' maxsize="1.623em"', "")

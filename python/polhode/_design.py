@@ -134,6 +134,7 @@ def minimize(
     names = list(parameters)
     scale = np.array([(sizes or {}).get(k) or abs(parameters[k]) or 1.0 for k in names])
     start = np.array([parameters[k] for k in names]) / scale
+    low, high = ranges_of(bounds, parameters, scale)
     watched = list(limits or {})
     runs = _Evaluations(model, overrides, outcomes + watched, names, scale)
     n, worst = len(outcomes), [0.0]
@@ -155,7 +156,6 @@ def minimize(
 
     value(start)  # what is wrong with the model is wrong here already
     sizes_of_limits = np.abs(runs.at(start)[0][n:])
-    low, high = ranges_of(bounds, parameters, scale)
     way: "dict[str, Any]" = {"method": "L-BFGS-B", "options": {"gtol": tolerance, "ftol": 1e-15,
                                                              "maxfun": max_evaluations, "maxiter": max_evaluations}}
     if limits:

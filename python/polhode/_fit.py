@@ -162,12 +162,23 @@ class _Misfit:
         return np.array(rows).reshape(len(rows), len(self.names))
 
     def differences(self, x: Any) -> Any:
-        """Derivatives of the residuals by central differences of runs."""
+        """Derivatives of the residuals by central differences of runs, of one side where the other does not run: a
+        damping of zero cannot fall."""
+        here = self.residuals(x)
         columns = []
         for k in range(len(x)):
             step = np.zeros(len(x))
             step[k] = _DIFFERENCE * max(abs(x[k]), _DIFFERENCE)
-            columns.append((self.residuals(x + step) - self.residuals(x - step)) / (2 * step[k]))
+            sides = []
+            for side in (1, -1):
+                try:
+                    sides.append((side * step[k], self.residuals(x + side * step)))
+                except (ModelError, NotConverged):
+                    sides.append((0.0, here))
+            (above, high), (below, low) = sides
+            if above == below:
+                raise NotConverged(f"no run beside the estimate of '{self.names[k]}' ends: its error is unknown")
+            columns.append((high - low) / (above - below))
         return np.stack(columns, axis=1)
 
     def cost(self, x: Any) -> "tuple[float, Any]":

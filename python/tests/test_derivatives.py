@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import polhode
-from conftest import make_pendulum
+from conftest import make_chain, make_pendulum
 
 STEPS = ["50 ms", "10 ms", "1 ms"]
 
@@ -234,6 +234,14 @@ def test_far_guesses_bounds_and_coarse_frames(jacobian: str) -> None:
         polhode.fit(m, measured(spring()), {"variables.k": 39.0}, jacobian=jacobian)
 
 
+def test_an_estimate_at_the_end_of_its_range_has_an_error() -> None:
+    m = spring(c=0.0)
+    data = measured(m, noise=0.01)
+    with pytest.warns(UserWarning, match="'variables.c' ends at its bound"):
+        fit = polhode.fit(m, data, {"variables.k": 39.0, "variables.c": 0.0}, bounds={"variables.c": (0.0, 1e-300)})
+    assert abs(fit.parameters["variables.k"] - 40) < 4 * fit.errors["variables.k"] < 0.5
+
+
 def test_channels_of_different_units_count_alike_and_have_their_own_errors() -> None:
     m, random = spring(), np.random.default_rng(2)
     r = polhode.run(m, progress=False)
@@ -334,13 +342,7 @@ def test_points_of_probes_have_deviations_too() -> None:
 
 
 def test_doubts_of_a_design_are_said_once_at_the_end() -> None:
-    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": "3 s", "step": "20 ms"})
-    before = "ground"
-    for k in range(3):
-        m.add_body(f"b{k}", shape=polhode.Box(0.3, 0.02, 0.02), density=1000, position=[0.15 + 0.3 * k, 0, 0])
-        m.add_joint(f"j{k}", "spherical", [before, f"b{k}"], at=[0.3 * k, 0, 0])
-        before = f"b{k}"
-    m.bodies["b2"].angular_velocity = [0, 2, 3]
+    m = make_chain()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         found = polhode.minimize(m, "bodies.b2.position.z", {"gravity.2": -9.81}, max_evaluations=4,

@@ -6,6 +6,7 @@ import math
 import pytest
 
 import polhode
+from conftest import make_chain
 
 
 def test_gradient_of_a_throw_is_its_closed_form() -> None:
@@ -46,12 +47,6 @@ def test_what_has_no_gradient_is_refused_by_name(pendulum: polhode.Model) -> Non
 
 
 def test_a_chaotic_gradient_warns() -> None:
-    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": "3 s", "step": "20 ms"})
-    before = "ground"
-    for k in range(3):
-        m.add_body(f"b{k}", shape=polhode.Box(0.3, 0.02, 0.02), density=1000, position=[0.15 + 0.3 * k, 0, 0])
-        m.add_joint(f"j{k}", "spherical", [before, f"b{k}"], at=[0.3 * k, 0, 0])
-        before = f"b{k}"
-    m.bodies["b2"].angular_velocity = [0, 2, 3]
+    m = make_chain()
     with pytest.warns(UserWarning, match="no property of the motion"):
         polhode.gradient(m, "bodies.b2.position.z", "gravity.2")

@@ -1,44 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ledger of energy and momenta against closed forms.
 #include <cmath>
-#include <memory>
 
 #include <gtest/gtest.h>
 
-#include <polhode/compile/build_system.hpp>
-#include <polhode/engines/tree_engine.hpp>
-#include <polhode/io/read/read_model.hpp>
-#include <polhode/kernels/dispatch.hpp>
-#include <polhode/stepping/single_step.hpp>
-#include <polhode/stepping/start.hpp>
+#include <stepping/stepped_model.hpp>
 
 namespace polhode::ledger_tests {
 namespace {
 
-/// A system with its state and its steps at rho_inf = 1, along the tree.
-struct Steps {
-  explicit Steps(const std::string& text)
-      : system(build_system(io::read_model_text("format: 1\n" + text, "ledger.yaml", {}))),
-        state(system.initial_state()),
-        step(system, std::make_unique<TreeEngine>(system),
-             GeneralizedAlpha::from_spectral_radius(1.0), lane_kernels("automatic"), true) {
-    (void)start(system, state, GeneralizedAlpha::from_spectral_radius(1.0), 0.01);
-    step.ledger().begin(state);
-  }
+using test::SteppedModel;
 
-  void take(double dt, int count) {
-    for (int k = 0; k < count; ++k) {
-      ASSERT_TRUE(step.take(state, dt, NewtonOptions{}, {}).converged);
-      step.ledger().close_step(state);
-    }
+void take(SteppedModel& run, double dt, int count) {
+  for (int k = 0; k < count; ++k) {
+    ASSERT_TRUE(run.step.take(run.state, dt, NewtonOptions{}, {}).converged);
+    run.step.ledger().close_step(run.state);
   }
-
-  System system;
-  State state;
-  SingleStep step;
-};
+}
 
 constexpr const char* kFree = R"(
+format: 1
 gravity: [0, 0, -10]
 bodies:
   a: {mass: 2, inertia: [1, 2, 3], position: [1, 2, 3], velocity: [4, 5, 6], angular_velocity: [0, 0, 2]}
@@ -47,7 +28,7 @@ analysis: {duration: 1, step: 0.1}
 )";
 
 TEST(EnergyLedger, SumsAreThoseOfTheBodies) {
-  Steps run(kFree);
+  SteppedModel run(kFree);
   const BodySums s = run.step.ledger().sums(run.state);
   EXPECT_NEAR(s.kinetic, 0.5 * 2 * 77 + 0.5 * 3 * 4 + 0.5 * 3 * 1, 1e-12);
   EXPECT_NEAR(s.gravity_potential, 2 * 10 * 3, 1e-12);
@@ -62,8 +43,8 @@ TEST(EnergyLedger, SumsAreThoseOfTheBodies) {
 
 TEST(EnergyLedger, GravityIsAnImpulseOnTheMomenta) {
   for (const double dt : {0.1, 0.01, 1e-3}) {
-    Steps run(kFree);
-    run.take(dt, static_cast<int>(std::lround(0.5 / dt)));
+    SteppedModel run(kFree);
+    take(run, dt, static_cast<int>(std::lround(0.5 / dt)));
     const Ledger& l = run.state.ledger;
     EXPECT_NEAR(l.impulse[2].value(), -5 * 10 * 0.5, 1e-11) << dt;
     EXPECT_NEAR(l.impulse[0].value(), 0.0, 1e-12) << dt;
@@ -80,6 +61,7 @@ TEST(EnergyLedger, GravityIsAnImpulseOnTheMomenta) {
 }
 
 constexpr const char* kDriven = R"(
+format: 1
 bodies: {a: {mass: 2, inertia: [1, 1, 1]}}
 joints: {j: {type: prismatic, bodies: [ground, a], at: [0, 0, 0], axis: x}}
 loads: {m: {type: linear_motor, joint: j, displacement: "3*t^2"}}
@@ -89,8 +71,8 @@ analysis: {duration: 1, step: 0.1}
 // @tests{drive-work}
 TEST(EnergyLedger, TheWorkOfADriveIsTheEnergyThatItGives) {
   for (const double dt : {0.1, 0.01, 1e-3}) {
-    Steps run(kDriven);
-    run.take(dt, static_cast<int>(std::lround(1.0 / dt)));
+    SteppedModel run(kDriven);
+    take(run, dt, static_cast<int>(std::lround(1.0 / dt)));
     EXPECT_NEAR(run.state.ledger.put_in.value(), 0.5 * 2 * 36, 1e-9) << dt;
     EXPECT_NEAR(run.state.ledger.impulse[0].value(), 2 * 6, 1e-9) << dt;
     EXPECT_LT(drifts(run.state.ledger).energy, 1e-11) << dt;
@@ -98,6 +80,7 @@ TEST(EnergyLedger, TheWorkOfADriveIsTheEnergyThatItGives) {
 }
 
 constexpr const char* kDamped = R"(
+format: 1
 bodies: {a: {mass: 2, inertia: [1, 1, 1], position: [1, 0, 0], velocity: [3, 0, 0]}}
 joints: {j: {type: prismatic, bodies: [ground, a], at: [0, 0, 0], axis: x}}
 loads:
@@ -107,8 +90,8 @@ analysis: {duration: 1, step: 0.1}
 
 TEST(EnergyLedger, WhatADamperTakesIsWhatIsLost) {
   for (const double dt : {0.05, 0.01, 5e-4}) {
-    Steps run(kDamped);
-    run.take(dt, static_cast<int>(std::lround(1.0 / dt)));
+    SteppedModel run(kDamped);
+    take(run, dt, static_cast<int>(std::lround(1.0 / dt)));
     const Balance b = run.step.ledger().balance(run.state);
     EXPECT_GT(b.dissipated, 5.0);
     EXPECT_NEAR(b.kinetic + b.potential + b.dissipated, 0.5 * 2 * 9, 1e-11) << dt;
@@ -118,16 +101,16 @@ TEST(EnergyLedger, WhatADamperTakesIsWhatIsLost) {
 
 // Its force on the body is an impulse from outside: of the ground.
 TEST(EnergyLedger, TheImpulseOfTheGroundIsTheChangeOfMomentum) {
-  Steps run(kDamped);
+  SteppedModel run(kDamped);
   const BodySums before = run.step.ledger().sums(run.state);
-  run.take(0.01, 37);
+  take(run, 0.01, 37);
   const BodySums after = run.step.ledger().sums(run.state);
   EXPECT_NEAR(run.state.ledger.impulse[0].value(), after.p[0] - before.p[0], 1e-12);
 }
 
 // @tests{jump-work}
 TEST(EnergyLedger, AJumpIsALossAndAnImpulse) {
-  Steps run(kFree);
+  SteppedModel run(kFree);
   EnergyLedger& ledger = run.step.ledger();
   const BodySums before = ledger.sums(run.state);
   BodyMotion m = run.system.motion(run.state, 1);
@@ -155,7 +138,7 @@ TEST(EnergyLedger, DriftsAreRelativeToTheLargestMagnitudesButNotToRounding) {
 }
 
 TEST(EnergyLedger, AJumpOfTheStateIsADrift) {
-  Steps run(kFree);
+  SteppedModel run(kFree);
   BodyMotion m = run.system.motion(run.state, 1);
   m.v *= 1.01;  // energy and momentum from nowhere
   run.state.set_motion(run.system.slot(1), m);

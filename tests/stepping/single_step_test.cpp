@@ -3,20 +3,16 @@
 // prediction.
 #include <cmath>
 #include <cstring>
-#include <memory>
 
 #include <gtest/gtest.h>
 
-#include <polhode/compile/build_system.hpp>
-#include <polhode/engines/tree_engine.hpp>
-#include <polhode/io/read/read_model.hpp>
-#include <polhode/kernels/dispatch.hpp>
-#include <polhode/stepping/single_step.hpp>
-#include <polhode/stepping/start.hpp>
 #include <polhode/stepping/step_error.hpp>
+#include <stepping/stepped_model.hpp>
 
 namespace polhode::single_step_tests {
 namespace {
+
+using test::SteppedModel;
 
 constexpr const char* kPendulum = R"(
 format: 1
@@ -30,22 +26,6 @@ joints:
 analysis: {duration: 1, step: 0.01}
 )";
 
-/// A system at its start, with its single steps.
-struct Bench {
-  explicit Bench(const char* text, double rho_inf = 1.0)
-      : system(build_system(io::read_model_text(text, "m.yaml", {}))),
-        state(system.initial_state()),
-        step(system, std::make_unique<TreeEngine>(system),
-             GeneralizedAlpha::from_spectral_radius(rho_inf), lane_kernels("automatic"), true) {
-    (void)start(system, state, GeneralizedAlpha::from_spectral_radius(rho_inf), 0.01);
-    step.ledger().begin(state);
-  }
-
-  System system;
-  State state;
-  SingleStep step;
-};
-
 bool same_bits(const State& x, const State& y) {
   return x.t == y.t && x.lambda == y.lambda && x.history == y.history &&
          x.past_count == y.past_count && x.dt_last == y.dt_last &&
@@ -54,7 +34,7 @@ bool same_bits(const State& x, const State& y) {
 
 TEST(SingleStep, AFailureLeavesTheStateAsItWas) {
   for (const double rho_inf : {1.0, 0.7}) {
-    Bench bench(kPendulum, rho_inf);
+    SteppedModel bench(kPendulum, rho_inf);
     ASSERT_TRUE(bench.step.take(bench.state, 0.01, {}, {}).converged);
     const State before = bench.state;
     const NewtonReport report = bench.step.take(bench.state, 40.0, {}, {});
@@ -64,7 +44,7 @@ TEST(SingleStep, AFailureLeavesTheStateAsItWas) {
     after.ledger = before.ledger;
     EXPECT_TRUE(same_bits(before, after)) << rho_inf;
     // The next step is that which would have followed.
-    Bench other(kPendulum, rho_inf);
+    SteppedModel other(kPendulum, rho_inf);
     ASSERT_TRUE(other.step.take(other.state, 0.01, {}, {}).converged);
     ASSERT_TRUE(other.step.take(other.state, 0.01, {}, {}).converged);
     ASSERT_TRUE(bench.step.take(bench.state, 0.01, {}, {}).converged);
@@ -74,7 +54,7 @@ TEST(SingleStep, AFailureLeavesTheStateAsItWas) {
 
 /// Difference of the motion after `time` from that with steps of a quarter.
 double error_at(double dt, double rho_inf) {
-  Bench coarse(kPendulum, rho_inf), fine(kPendulum, rho_inf);
+  SteppedModel coarse(kPendulum, rho_inf), fine(kPendulum, rho_inf);
   const int steps = static_cast<int>(std::lround(0.4 / dt));
   for (int k = 0; k < steps; ++k) EXPECT_TRUE(coarse.step.take(coarse.state, dt, {}, {}).converged);
   for (int k = 0; k < 4 * steps; ++k)
@@ -94,7 +74,7 @@ TEST(SingleStep, HasOrderTwo) {
 TEST(SingleStep, EstimatesItsErrorFromItsPrediction) {
   double last = 0.0;
   for (const double dt : {0.02, 0.01, 5e-3}) {
-    Bench bench(kPendulum);
+    SteppedModel bench(kPendulum);
     const int steps = static_cast<int>(std::lround(0.3 / dt));
     for (int k = 0; k < steps; ++k) ASSERT_TRUE(bench.step.take(bench.state, dt, {}, {}).converged);
     const State before = bench.state;
@@ -119,7 +99,7 @@ TEST(SingleStep, EstimatesItsErrorFromItsPrediction) {
 TEST(SingleStep, PredictsBetterFromMorePastSteps) {
   int iterations[2] = {0, 0};
   for (const int which : {0, 1}) {
-    Bench bench(kPendulum);
+    SteppedModel bench(kPendulum);
     for (int k = 0; k < 100; ++k) {
       const NewtonReport r = bench.step.take(bench.state, 2e-3, {}, {which == 0 ? -1 : 3, false});
       ASSERT_TRUE(r.converged);
@@ -132,18 +112,18 @@ TEST(SingleStep, PredictsBetterFromMorePastSteps) {
 
 TEST(SingleStep, TakenBackEndsWhereItBegan) {
   for (const double dt : {0.05, 0.01, 5e-4}) {
-    Bench bench(kPendulum);
+    SteppedModel bench(kPendulum);
     for (int k = 0; k < 10; ++k) ASSERT_TRUE(bench.step.take(bench.state, dt, {}, {}).converged);
     for (int k = 0; k < 10; ++k)
       ASSERT_TRUE(bench.step.take(bench.state, -dt, {}, {-1, false}).converged);
-    Bench at_start(kPendulum);
+    SteppedModel at_start(kPendulum);
     EXPECT_LT(state_difference(bench.system, bench.state, at_start.state, dt), 1e-11) << dt;
     EXPECT_NEAR(bench.state.t, 0.0, 1e-15);
   }
 }
 
 TEST(SingleStep, SaysWhetherAStopWasMet) {
-  Bench bench(R"(
+  SteppedModel bench(R"(
 format: 1
 bodies: {a: {mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}}
 joints: {j: {type: prismatic, bodies: [ground, a], at: [0, 0, 0], axis: x, limits: {upper: 0.05, restitution: 0.5}}}

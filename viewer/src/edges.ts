@@ -54,7 +54,7 @@ export function outlined(material: Surface): Surface {
       .replace("#include <opaque_fragment>", `float outlineFacing = dot(normal, geometryViewDir), outlineAt = sqrt(max(0.0, 1.0 - outlineFacing * outlineFacing));
 float outlineLight = ${outlineOf("outlineAt")};
 outgoingLight *= outlineLight;
-diffuseColor.a = max(diffuseColor.a, 1.0 - outlineLight);  // of ghosts, too
+diffuseColor.a = max(diffuseColor.a, 1.0 - outlineLight);  // ghosts have opaque outlines
 #include <opaque_fragment>`);
   };
   return material;

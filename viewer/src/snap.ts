@@ -29,7 +29,7 @@ export function spotAt(view: View, x: number, y: number, hit: Hit | null): Spot 
     offer(hit.choice, `a node of ${m.solids[index].name}`, () => view.solids.node(index, node, new Vector3()), true);
   }
   if (joints.group.visible) m.joints.forEach((joint, index) => { if (joint.Za) offer({ kind: "joint", index }, joint.name, () => joints.point(index, new Vector3()), true); });
-  found.sort((a, b) => a.far - b.far || a.deep - b.deep);  // of points one behind the other the nearest
+  found.sort((a, b) => a.far - b.far || a.deep - b.deep);  // the nearest of several points behind one another
   for (const { spot, through } of found) if (through || view.sees(spot.at())) return spot;
   if (!hit) return null;
   const { choice, point } = hit, body = choice.kind === "body" ? choice.index : -1;

@@ -38,7 +38,7 @@ export class Stage {
   size = 1;
   dirty = true;
   private moving = false;
-  private part = 1;  // of kRatio, while something moves
+  private part = 1;  // share of kRatio while something moves
   private drawn = false;  // a picture whose size changes is drawn again at once: it would be empty until the next one
   /** Size of the pictures of a film; null: that of the window. */
   fixedSize: [number, number] | null = null;

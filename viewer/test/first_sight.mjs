@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is under and beside the picture at first sight: plots of the probes, their layout and units, the table of extremes.
+// The page at first sight: plots of the probes below the picture, their layout and units, the table of extremes.
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";

@@ -55,7 +55,7 @@ for (const [path, id, count] of [["theory/rigid_body_dynamics.html", "equation-e
 for (const path of ["theory/rigid_body_dynamics.html", "theory/surface_contact.html", "theory/loads.html"])
   await open(path, {}, async (page) => {
     const low = await page.evaluate(() => [...document.querySelectorAll("article math mo[stretchy=true]")].filter((mo) => !mo.hasAttribute("maxsize") && mo.textContent.trim()).map((mo) => {
-      // What stands beside it, up to the bracket that belongs to it: all of its row at most.
+      // The parts of its row beside it, up to its own bracket.
       const all = [...mo.parentElement.children].filter((e) => e.localName === "mfrac" || e.localName === "munder" || e.localName === "mtable"), height = Math.max(0, ...all.map((e) => e.getBoundingClientRect().height));
       return { text: mo.textContent, height: mo.getBoundingClientRect().height, held: height };
     }).filter(({ height, held }) => height < 0.8 * held));
