@@ -20,6 +20,7 @@ LAYERS = [
     ["stepping"],
     ["statics"],
     ["compile"],
+    ["joint_space"],
     ["simulation"],
     ["gradient"],
     ["io/text"],

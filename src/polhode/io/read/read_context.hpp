@@ -23,6 +23,17 @@ struct PartSource {
   const SourceNode* root = nullptr;
 };
 
+/// Start value of a coordinate of a joint.
+struct JointStart {
+  int joint = 0;  ///< Index into Model::joints.
+  std::string coordinate;
+  std::string name;  ///< As an IndependentCoordinate.
+  std::string path;  ///< Of the key, for messages.
+  SourceLocation place;
+  double value = 0.0;  ///< SI.
+  bool is_rate = false;
+};
+
 /// Longest name [characters]: file systems allow 255 with the endings of files.
 inline constexpr std::size_t kLongestName = 200;
 
@@ -51,6 +62,7 @@ struct ReadContext {
   std::vector<bool> body_is_sound{};  ///< No error was found in the body's placement.
   std::string source_file{};          ///< Model file, as shown in messages.
   Variables given_variables{};        ///< Of a part: set by the whole.
+  std::vector<JointStart> starts{};   ///< Of the file's own joints, until bodies are placed.
   std::vector<PartSource> parts{};    ///< Including nested parts.
   /// The file and those containing it as a part, full paths.
   std::vector<std::string> files_above{};
@@ -248,6 +260,12 @@ void read_solid_contact(ReadContext& context, const SourceNode& node, const std:
 std::optional<std::array<Side, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
                                                   const std::string& path);
 void read_joints(ReadContext& context, const SourceNode& node);
+/// Reads start values of the coordinates of a joint, which is the next one of the model.
+/// @param names  Of its coordinates.
+void read_start(ReadContext& context, const Section& section, const std::string& key,
+                const std::string& joint, const std::vector<std::string>& names);
+/// Places the bodies at the start values of joints, after all objects of the file.
+void place_starts(ReadContext& context);
 void read_contacts(ReadContext& context, const SourceNode& node);
 void read_materials(ReadContext& context, const SourceNode& node);
 void read_sections(ReadContext& context, const SourceNode& node);

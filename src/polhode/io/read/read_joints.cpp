@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/math/dense.hpp>
 
@@ -80,6 +82,8 @@ class JointReader {
       return;
     if (takes("distance")) complete_distance();
     check_recipe();
+    if (context_.diagnostics.size() != before) return;
+    read_starts();
     check_start();
   }
 
@@ -335,8 +339,39 @@ class JointReader {
     check("turning_stiffness", demand.rotations, "rotations");
   }
 
-  /// Joints given with `at` start at zero; others are checked when the start is assembled.
+  void read_starts() {
+    if (!takes("start") || (!section_.has("start") && !section_.has("start_rate"))) return;
+    const Joint joint(joint_.name, joint_.type, {joint_.a, joint_.b},
+                      joint_kind(joint_.type)
+                          .recipe({joint_.Z_a, joint_.Z_b, joint_.R_a, joint_.R_b},
+                                  {joint_.free, joint_.parameters}));
+    const std::vector<std::string> names = joint.coordinate_names();
+    for (const char* key : {"start", "start_rate"})
+      if (section_.has(key)) read_start(context_, section_, key, joint_.name, names);
+  }
+
+  /// Value at the start of the coordinate that has stops, if the file gives it.
+  [[nodiscard]] std::optional<double> start_of(const char* coordinate) const {
+    for (const JointStart& start : context_.starts)
+      if (start.joint == static_cast<int>(context_.model.joints.size()) && !start.is_rate &&
+          start.coordinate == coordinate)
+        return start.value;
+    return std::nullopt;
+  }
+
+  /// Joints given with `at` start at zero, unless a start is given; others are checked when the
+  /// start is assembled.
   void check_start() {
+    const bool turns = joint_.type == "revolute";
+    for (const auto& [key, coordinate, limits] :
+         {std::tuple("limits", turns ? "rz" : "z", joint_.limits),
+          std::tuple("angle_limits", "rz", joint_.angle_limits)}) {
+      const auto start = start_of(coordinate);
+      if (limits && start &&
+          (limits->lower.value_or(*start) > *start || limits->upper.value_or(*start) < *start))
+        section_.fault("start", format("{:g} is outside of the {}", *start, key),
+                       "Give a start between the stops, or move these.");
+    }
     if (joint_.assembled_start) return;
     if (joint_kind(joint_.type).points_apart) {
       if (!joint_.limits) return;
@@ -348,9 +383,11 @@ class JointReader {
                        "Move the points, or widen the limits.");
       return;
     }
-    for (const auto& [key, limits] :
-         {std::pair("limits", joint_.limits), std::pair("angle_limits", joint_.angle_limits)})
-      if (limits && (limits->lower.value_or(0.0) > 0.0 || limits->upper.value_or(0.0) < 0.0))
+    for (const auto& [key, coordinate, limits] :
+         {std::tuple("limits", turns ? "rz" : "z", joint_.limits),
+          std::tuple("angle_limits", "rz", joint_.angle_limits)})
+      if (limits && !start_of(coordinate) &&
+          (limits->lower.value_or(0.0) > 0.0 || limits->upper.value_or(0.0) < 0.0))
         section_.fault(key, "the joint starts at 0, which is outside",
                        "Coordinates count from the start where the joint is given with at: shift "
                        "the limits, or give at_body or axis_body.");

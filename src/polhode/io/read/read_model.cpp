@@ -170,6 +170,7 @@ void read_things(ReadContext& context, const SourceNode& root, const std::string
   read("joints", read_joints);
   read("solids", read_solids);
   read("loads", read_loads);
+  place_starts(context);
 }
 
 void check_model(ReadContext& context, const SourceNode& root) {

@@ -55,6 +55,7 @@ enum class FieldKind : unsigned char {
   kNames,          ///< A list of names.
   kBodyPairs,      ///< A list of pairs of bodies.
   kRows,           ///< Rows of numbers, all of one length.
+  kCoordinates,    ///< A number, or a map from coordinates of a joint to numbers.
 };
 
 /// Range of a number, in SI.

@@ -137,6 +137,20 @@ KindTable joint_table(const JointKind& kind) {
                       .choices = {"x", "y", "z", "rx", "ry", "rz"}});
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
   add_resistance(kind.name, fields);
+  if (!kind.points_apart && kind.name != "fixed") {
+    fields.push_back({.name = "start",
+                      .kind = kCoordinates,
+                      .meaning = "Value at the start of the joint's coordinate, or of each by its "
+                                 "name; bodies are placed there, along chains of joints.",
+                      .standard = "as the bodies are placed",
+                      .since = "0.2"});
+    fields.push_back(
+        {.name = "start_rate",
+         .kind = kCoordinates,
+         .meaning = "Rate of it at the start, which sets the velocities of the bodies.",
+         .standard = "as the bodies' velocities",
+         .since = "0.2"});
+  }
   if (!kind.points_apart)
     fields.push_back({.name = "motion",
                       .kind = kSection,

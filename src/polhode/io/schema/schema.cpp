@@ -177,6 +177,11 @@ json field_schema(const FieldTable& table, const Field& field) {
       return {{"anyOf", json::array({reference("number"), list_of(reference("number"), 1, 0)})}};
     case kLevel:
       return {{"anyOf", json::array({{{"enum", {"min", "max"}}}, reference("number")})}};
+    case kCoordinates:
+      return {{"anyOf", json::array({reference("number"),
+                                     {{"type", "object"},
+                                      {"propertyNames", {{"pattern", "^r?[xyz]$"}}},
+                                      {"additionalProperties", reference("number")}}})}};
     case kStep:
       return {{"anyOf", json::array({{{"const", "auto"}}, reference("number")})}};
     case kVariables:

@@ -91,6 +91,8 @@ std::string form(const Field& field) {
       return "auto, or number";
     case kVariables:
       return "map from names to numbers";
+    case kCoordinates:
+      return "number, or map from coordinates to numbers";
     case kNamed:
       return "map from names, see " + field.table;
     case kSection:
