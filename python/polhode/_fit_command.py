@@ -17,6 +17,7 @@ import numpy as np
 
 from . import _native
 from ._errors import ModelError, NotConverged
+from ._text import Written
 
 _EXAMPLES = """\
 A parameter is a variable of the model or a path, with its first guess:
@@ -188,7 +189,7 @@ def _fit(given: argparse.Namespace) -> int:
         name, equals, value = text.partition("=")
         if not equals:
             raise _Usage(f"--set {text}: write --set PATH=VALUE")
-        overrides[name] = value
+        overrides[name] = Written(value)
     for name in bounds:
         if name not in guesses:
             raise _Usage(f"--bound {name}: is not among the parameters of --with")

@@ -17,7 +17,7 @@ from ._errors import NotConverged
 from ._gradient import gradients as gradients_of
 from ._gradient import source_of
 from ._measure import measure
-from ._model import Model
+from ._model import Model, Overrides
 from ._result import Result
 from ._run import whole_run
 
@@ -30,7 +30,8 @@ def _points(parameters: "Mapping[str, Any]", n: Optional[int], method: str, seed
 
     names = list(parameters)
     if method == "grid":
-        axes = [np.linspace(v[0], v[1], n or 5).tolist() if isinstance(v, tuple) else list(v)
+        # 15 digits: 0.45 instead of 0.44999999999999996.
+        axes = [[float(f"{x:.15g}") for x in np.linspace(v[0], v[1], n or 5)] if isinstance(v, tuple) else list(v)
                 for v in parameters.values()]
         return [dict(zip(names, values)) for values in itertools.product(*axes)]
     if n is None:
@@ -51,18 +52,19 @@ def _points(parameters: "Mapping[str, Any]", n: Optional[int], method: str, seed
     return [dict(zip(names, row)) for row in values.tolist()]
 
 
-def _one(task: "tuple[Model, dict[str, Any], Any, list[str]]") -> "dict[str, Any]":
+def _one(task: "tuple[Model, dict[str, Any], dict[str, Any], Any, list[str]]") -> "dict[str, Any]":
     """One run as a row; a failure is a row with its message."""
-    model, point, outputs, outcomes = task
+    model, fixed, point, outputs, outcomes = task
+    overrides = {**fixed, **point}
     row: "dict[str, Any]" = {**point, "message": ""}
     try:
-        result = whole_run(model, point)
+        result = whole_run(model, overrides)
         row.update({name: result.ledger[name] for name in _FIGURES})
         for text in () if callable(outputs) else outputs:
             row.update(measure(result, text))
         if callable(outputs):
             row.update(outputs(result))
-        for g in gradients_of(source_of(model, point), outcomes, list(point), None, False) if outcomes else ():
+        for g in gradients_of(source_of(model, overrides), outcomes, list(point), None, False) if outcomes else ():
             row.update({f"d({g.outcome})/d({path})": slope for path, slope in g.by.items()})
     except NotConverged as error:
         row["message"] = str(error)
@@ -79,6 +81,7 @@ def sweep(
     *,
     n: Optional[int] = None,
     method: str = "grid",
+    overrides: Overrides = None,
     outputs: "Union[Sequence[str], Callable[[Result], dict[str, Any]]]" = (),
     gradients: "Sequence[str]" = (),
     processes: Optional[int] = None,
@@ -92,6 +95,7 @@ def sweep(
     method:     "grid": all combinations; a list gives values, a tuple (from, to) n equal steps.
                 "sobol", "lhs" (Latin hypercube): n points between (lowest, highest) of each.
                 "normal": n points of (mean, standard deviation).
+    overrides:  changes of the model for all runs, by path: {"analysis.duration": "2 s"}.
     outputs:    channels whose last values become columns, or measures: "max(joints.A.force.size)", min, mean, rms,
                 range, "at(bodies.b.position.x, 0.5)", "first(probes.tip.z > 0.3)" as a time; or a function of the
                 Result that returns a dict, with several processes one that can be pickled.
@@ -111,12 +115,14 @@ def sweep(
 
     points = _points(parameters, n, method, seed)
     wanted = outputs if callable(outputs) else list(outputs)
-    identity = hashlib.sha256(pickle.dumps((model.to_dict(), wanted, *gradients))).hexdigest()
+    fixed = dict(overrides or {})
+    changes = (sorted(fixed.items()),) if fixed else ()
+    identity = hashlib.sha256(pickle.dumps((model.to_dict(), wanted, *gradients, *changes))).hexdigest()
     rows: "dict[int, dict[str, Any]]" = {}
     path = os.fspath(resume) if resume is not None else None
     if path is not None and os.path.exists(path):
         rows = _rows_of(path, identity, points)
-    tasks = {i: (model, point, wanted, list(gradients)) for i, point in enumerate(points) if i not in rows}
+    tasks = {i: (model, fixed, point, wanted, list(gradients)) for i, point in enumerate(points) if i not in rows}
     log = None
     if path is not None:
         log = io.open(path, "a", encoding="utf-8")

@@ -10,6 +10,7 @@ import sys
 from typing import Any, Optional
 
 from ._errors import ModelError
+from ._text import Written
 
 _EXAMPLES = """\
 A parameter is a variable of the model or a path, and its values:
@@ -53,6 +54,17 @@ def _parameter(text: str, method: str) -> "tuple[str, Any]":
     return name, (_number(ends[0], text), _number(ends[1], text))
 
 
+def _changes(texts: "list[str]", known: "dict[str, Any]") -> "dict[str, str]":
+    """Changes of the model by path, from those of --set."""
+    changes: "dict[str, str]" = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name:
+            raise _Usage(f"--set {text}: write --set PATH=VALUE")
+        changes[f"variables.{name}" if name in known else name] = Written(value)
+    return changes
+
+
 def _arguments() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="polhode sweep", description="Runs a model at many values of its parameters.",
                                      epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -61,6 +73,8 @@ def _arguments() -> argparse.ArgumentParser:
                         help="a parameter; may be repeated")
     parser.add_argument("-n", type=int, help="number of points; of a grid: steps of each range (5)")
     parser.add_argument("--method", choices=["grid", "sobol", "lhs", "normal"], default="grid")
+    parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE",
+                        help="changes a value of the model in all runs; may be repeated")
     parser.add_argument("--output", action="append", default=[], metavar="CHANNEL",
                         help="a channel whose last values become columns, such as bodies.rod.position, or a measure: "
                         "max(CHANNEL), min, mean, rms, range, final, at(CHANNEL, TIME), first(CHANNEL > VALUE); a "
@@ -106,7 +120,10 @@ def _sweep(given: argparse.Namespace) -> int:
     parameters = {f"variables.{k}" if k in known else k: v for k, v in parameters.items()}
     if given.method != "grid" and given.n is None:
         raise _Usage(f"the method {given.method} requires -n, the number of points")
-    first = {k: v[0] for k, v in parameters.items()}
+    changes = _changes(given.set, known)
+    if both := sorted(set(changes) & set(parameters)):
+        raise _Usage(f"'{both[0]}' is set and varies; give it to --set or to --vary")
+    first = {**changes, **{k: v[0] for k, v in parameters.items()}}
     model.check(first)  # faults of all runs end the command at once
     if given.plot and len(parameters) > 2:
         raise _Usage(f"--plot draws over one or two parameters, and {len(parameters)} vary")
@@ -123,8 +140,9 @@ def _sweep(given: argparse.Namespace) -> int:
     if given.dask:
         client = importlib.import_module("distributed").Client(given.dask)
     try:
-        table = sweep(model, parameters, n=given.n, method=given.method, outputs=given.output, gradients=given.gradient,
-                      processes=given.jobs, resume=given.table + ".rows", seed=given.seed, client=client)
+        table = sweep(model, parameters, n=given.n, method=given.method, overrides=changes, outputs=given.output,
+                      gradients=given.gradient, processes=given.jobs, resume=given.table + ".rows", seed=given.seed,
+                      client=client)
     finally:
         if client is not None:
             client.close()

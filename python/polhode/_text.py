@@ -14,6 +14,12 @@ _WORDS = {"true", "false", "null", "inf", "nan"}
 _WIDTH = 100
 
 
+class Written(str):
+    """A value as it stands on the command line: a number, a text, or a map or list in YAML."""
+
+    __slots__ = ()
+
+
 def scalar(value: Any) -> str:
     """A number, text or boolean as in a model file."""
     if value is None:
@@ -39,6 +45,8 @@ def flow(tree: Any) -> str:
         return "{" + ", ".join(f"{key(k)}: {flow(v)}" for k, v in tree.items()) + "}"
     if isinstance(tree, list):
         return "[" + ", ".join(flow(v) for v in tree) + "]"
+    if isinstance(tree, Written):
+        return str(tree)
     return scalar(tree)
 
 

@@ -146,8 +146,8 @@ def test_the_fit_command_says_what_it_does_not_know(tmp_path: pathlib.Path,
     assert set(found["errors"].values()) == {None} and found["covariance"] == [[None] * 3] * 3
     assert "variables.k, variables.c, variables.m" in found["warnings"][0]
     assert "2 columns are no positions or velocities and are left out, such as energy.total" in said.err
-    assert _fit_command.main([*words[:2], "--with", "k=36", "--set", "m=1.1"]) == 0
-    assert f"polhode run {model} --set m=1.1 --set variables.k=" in capsys.readouterr().out
+    assert _fit_command.main([*words[:2], "--with", "k=36", "--set", "m=1.1", "--set", "gravity=[0, 0, 0]"]) == 0
+    assert f"polhode run {model} --set m=1.1 --set 'gravity=[0, 0, 0]' --set variables.k=" in capsys.readouterr().out
     assert _fit_command.main([*words, "--set", "analysis.duration=1"]) == 2
     assert "the data go from 0 to 2 s" in capsys.readouterr().err
     m.analysis = {"type": "statics"}

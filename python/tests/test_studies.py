@@ -184,7 +184,36 @@ def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path: pathlib.Pa
     assert status == 1 and "2 runs, 1 of them failed" in said
 
 
+def test_what_is_set_holds_in_all_runs(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
+    import pandas
+
+    file, csv = tmp_path / "model.yaml", tmp_path / "t.csv"
+    oscillator().save(file)
+    words = [str(file), "-o", str(csv), "--jobs", "1", "--vary", "k=20..40", "-n", "2"]
+    words += ["--output", "bodies.b.position.z"]
+    assert _sweep_command.main(words) == 0
+    short = ["--set", "analysis.duration=1 s", "--set", "c=0.25", "--set", "gravity=[0, 0, 0]"]
+    assert _sweep_command.main([*words, *short]) == 0  # other runs than those of t.csv.rows
+    table = pandas.read_csv(csv)
+    m = oscillator()
+    m.variables["c"], m.gravity = 0.25, [0, 0, 0]
+    alone = [polhode.run(m, overrides={"variables.k": k, "analysis.duration": "1 s"}) for k in (20, 40)]
+    assert table["t"].tolist() == [1, 1]
+    assert table["bodies.b.position.z"].tolist() == [r.bodies["b"].position[-1, 2] for r in alone]
+    given = {"analysis.duration": "1 s", "variables.c": 0.25, "gravity": [0, 0, 0]}
+    again = polhode.sweep(oscillator(), {"variables.k": (20, 40)}, n=2, overrides=given, processes=1,
+                          outputs=["bodies.b.position.z"])
+    assert again["result_hash"].tolist() == table["result_hash"].tolist()
+
+
+def test_values_of_a_grid_are_those_that_one_would_write() -> None:
+    points = _sweep._points({"a": (0.2, 0.5)}, 7, "grid", 0)
+    assert [p["a"] for p in points] == [0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5]
+
+
 @pytest.mark.parametrize(("words", "message"), [
+    (["--vary", "k=1,2", "--set", "k=3"], "'variables.k' is set and varies"),
+    (["--vary", "k=1,2", "--set", "k"], "--set k: write --set PATH=VALUE"),
     ([], "nothing varies; write --vary"),
     (["--vary", "k"], "--vary k: write --vary NAME=VALUES"),
     (["--vary", "k=a,b"], "'a' is not a number"),
