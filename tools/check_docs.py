@@ -27,7 +27,7 @@ KIND_FILES = {
 # Loads on solids have .name = "name" in their own files and are on the page of the loads on bodies.
 SOLID_LOADS = "src/polhode/solids/loads"
 SOLID_LOAD = re.compile(r'\{\.name = "(\w+)"')
-KIND = re.compile(r'^ {6}(?:\{|inerter_kind\()"(\w+)",', re.M)
+KIND = re.compile(r'^ {6}(?:(?:\{|inerter_kind\()"(?=\w+",))?(\w+)(?:",|_kind\(\),)', re.M)
 OWN_KIND = re.compile(r'\bkKind = "(\w+)"')
 TOP = ("src", "apps", "tests", "docs", "tools", "scripts", "cmake", "benchmarks", "examples", "changes", "python",
        "viewer")

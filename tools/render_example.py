@@ -13,7 +13,7 @@ import render_hero
 import render_mechanisms
 
 MECHANISMS = ("tumbling_body", "heavy_top", "double_pendulum", "spatial_slider_crank", "crank_rocker", "n_four_bar", "andrews_squeezer", "bricard",
-              "flyball_governor", "gyroscope", "door_on_two_hinges", "beam_roll_up", "flexible_four_bar")
+              "flyball_governor", "gyroscope", "reaction_wheels", "door_on_two_hinges", "beam_roll_up", "flexible_four_bar")
 CONTACT = ("bouncing_ball", "incline", "newtons_cradle", "tippe_top", "rattleback", "stack", "card_house", "rolling_coin",
            "spheres_in_a_bin", "gear_pair", "crossed_lines")
 CONNECTORS = ("planetary_gearbox", "suspension_corner", "shaking_table", "stewart_platform", "three_rrr", "delta_robot", "geneva_drive", "excavator", "trebuchet",

@@ -222,6 +222,27 @@ def gyroscope():
     return figure
 
 
+def reaction_wheels():
+    m = Motion("reaction_wheels")
+    figure, scene, plot = sheet((24, -50), wide=1.3)
+    rims = [tube(0.22, 0.08, axis) for axis in range(3)]
+    right = np.array([np.sin(np.radians(50)), np.cos(np.radians(50)), 0])  # in the picture
+    for n, k in enumerate((0, 90, len(m.t) - 1)):
+        shift = (1.75 * n - 2.15) * right
+        draw(scene, m.points("satellite", box(1, 0.8, 0.9), k) + shift, INK, 1, 1.2)
+        for axis, (rim, colour) in enumerate(zip(rims, (RED, GREEN, BLUE))):
+            at = np.eye(3)[axis] * (0.62, 0.52, 0.57)[axis]
+            for line in rim:
+                draw(scene, m.points("satellite", line + at, k) + shift, colour, 1, 0.9)
+    fit(scene, (-2, -2, -1), (2, 2, 1), 1.55)
+    scene.set_title("at 0, 9 and 20 s; wheels drawn outside", loc="center", y=0.84)
+    for name, colour in (("x", RED), ("y", GREEN), ("z", BLUE)):
+        plot.plot(m.t, m.probe(name)["speed"], color=colour, label=f"wheel {name}")
+    plot.legend(frameon=False, fontsize=8)
+    label(plot, "speeds of the wheels [rad/s]")
+    return figure
+
+
 def door_on_two_hinges():
     m = Motion("door_on_two_hinges")
     figure, scene, plot = sheet((26, -40), wide=0.9)

@@ -37,7 +37,9 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
     EXPECT_STREQ(
         e.what(),
         "loads: the type 'torque' is not known. Use one of: force, moment, "
-        "spring_damper, potential, axial_force, vector_damper, bushing, attraction, drag, "
+        "spring_damper, potential, axial_force, vector_damper, bushing, attraction, "
+        "gravity_gradient, "
+        "drag, rotor, "
         "torsional_spring, translational_spring, rotary_motor, linear_motor, "
         "rotary_servo, linear_servo, rotary_inerter, linear_inerter, gear, screw, coupling, "
         "point_on_surface, point_on_curve, curve_on_curve, rolling.");

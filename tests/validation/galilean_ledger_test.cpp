@@ -152,6 +152,10 @@ joints:
       {"attraction",
        "loads: {it: {type: attraction, bodies: [one, two], "
        "strength: 7 N*m^2}}\n"},
+      {"gravity_gradient", "loads: {it: {type: gravity_gradient, bodies: [one, two], mu: 3}}\n"},
+      {"rotor",
+       "loads: {it: {type: rotor, body: one, axis: [1, 2, 3], inertia: 0.1, moment: 3*t, "
+       "start_speed: 20}, other: {type: rotor, body: two, inertia: 0.1, speed: 20 + 30*t}}\n"},
       {"drag", ""},  // through a medium at rest
       {"torsional_spring", hinges + "loads: {it: {type: torsional_spring, "
                                     "joint: a, stiffness: 30, damping: 1}}\n"},

@@ -21,6 +21,7 @@
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/loads/rotor.hpp>
 #include <polhode/model/gear_geometry.hpp>
 #include <polhode/model/switched_contacts.hpp>
 #include <polhode/model/velocity_jumps.hpp>
@@ -84,6 +85,7 @@ class Builder {
       data.inertia = body.mass * reach * reach * Mat3::Identity();
     else
       start.W = start.q.conjugate() * body.angular_velocity;
+    data.inertia += rotor_inertia(model_, static_cast<int>(map_.body.size()), true);
     map_.body.push_back(system_.add_body(std::move(data), start));
   }
 
@@ -247,6 +249,9 @@ class Builder {
                                      : "relates coordinates of one kind, which requires a ratio",
                          gear->mixed ? "Give radius alone" : "Give ratio alone");
     }
+    if (kind.name == Rotor::kKind && model_.analysis.turning)
+      throw InputError(where, "is a rotor, which modes about a spin do not support yet",
+                       "Give a body with a revolute joint and a motor instead");
     if (kind.place == LoadPlace::row)
       coupled = coupled_coordinates(where, load, model_, system_.group<Joint>().items());
     else
@@ -275,6 +280,7 @@ class Builder {
     if (const BodySpec* one = spec(b)) {
       d.mass_b = one->mass;
       if (!one->point_mass) d.inertia_b = one->inertia;
+      if (kind.place == LoadPlace::centres) d.inertia_b += rotor_inertia(model_, b, false);
     }
     if (gear) {
       d.bodies = gear->bodies;

@@ -3,6 +3,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/loads/coordinate_motion.hpp>
+#include <polhode/loads/rotor.hpp>
 #include <polhode/model/gear_geometry.hpp>
 #include <polhode/system/angle_quotient.hpp>
 
@@ -35,6 +36,17 @@ void add_function(const std::string& where, const LoadSpec& load, const LoadKind
                      "Give one of them");
   d.of_motion = placed(load.of_motion, load.part_axes, load.body_fixed, kind.vector == "moment");
   if (!of_point) d.drive = key;
+}
+
+Mat3 rotor_inertia(const Model& model, int body, bool driven) {
+  Mat3 sum = Mat3::Zero();
+  for (const LoadSpec& load : model.loads) {
+    if (load.solid >= 0 || load.type != Rotor::kKind || load.b != body) continue;
+    if (driven && load.drive != "speed") continue;
+    const Vec3 axis = load.R_b.col(2);
+    sum += load.parameters.at("inertia") * axis * axis.transpose();
+  }
+  return sum;
 }
 
 std::vector<CoupledCoordinate> coupled_coordinates(const std::string& where, const LoadSpec& load,

@@ -19,6 +19,11 @@ namespace polhode {
 void add_function(const std::string& where, const LoadSpec& load, const LoadKind& kind,
                   LoadDescription& d);
 
+/// Inertia about their axes of the rotors on a body, body axes [kg m²]; a body's own is without.
+/// @param body    Its index in the model.
+/// @param driven  Of those with a given speed only, which turn with the body.
+[[nodiscard]] Mat3 rotor_inertia(const Model& model, int body, bool driven);
+
 /// The coordinates of a coupling. Of its turns at the start the first one has as many as bring it
 /// nearest to the row, the others none.
 /// @param joints  By their index in the model.

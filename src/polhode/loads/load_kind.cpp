@@ -12,6 +12,7 @@ int LoadKind::report_size() const {
 }
 
 std::string LoadKind::function_key() const {
+  if (place == LoadPlace::axis) return "";
   for (const TimeParameter& drive : drives)
     if (drive.name == "force" || drive.name == "moment" || drive.name == "pull") return drive.name;
   return vector;

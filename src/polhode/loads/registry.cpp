@@ -4,6 +4,7 @@
 #include <polhode/loads/curve_on_curve.hpp>
 #include <polhode/loads/drag.hpp>
 #include <polhode/loads/gear.hpp>
+#include <polhode/loads/gravity_gradient.hpp>
 #include <polhode/loads/inerter.hpp>
 #include <polhode/loads/joint_spring.hpp>
 #include <polhode/loads/moment.hpp>
@@ -13,6 +14,7 @@
 #include <polhode/loads/point_on_surface.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/loads/rolling.hpp>
+#include <polhode/loads/rotor.hpp>
 #include <polhode/loads/servo.hpp>
 #include <polhode/loads/spring_damper.hpp>
 
@@ -171,6 +173,7 @@ const std::vector<LoadKind>& load_kinds() {
        add_attraction,
        {{"force", "N", 3}, {"length", "m"}, {"rate", "m/s"}, {"energy", "J"}},
        report_of<Attraction>},
+      gravity_gradient_kind(),
       {"drag",
        "resistance of a medium at rest to a body, mass-proportional damping",
        LoadPlace::body,
@@ -189,6 +192,7 @@ const std::vector<LoadKind>& load_kinds() {
        {},
        {},
        {"linear", "quadratic", "turning", "per_mass"}},
+      rotor_kind(),
       {"torsional_spring",
        "spring and damper about a free axis of a joint",
        LoadPlace::joint,

@@ -12,6 +12,7 @@ namespace polhode {
 /// Object of a kind of load, which determines its entries in the model file.
 enum class LoadPlace {
   body,     ///< A body, at a point: `body`, `at` or `at_body`.
+  axis,     ///< An axis fixed in a body: `body`, `axis` or `axis_body`.
   points,   ///< Two points of two bodies: `bodies`, `at` or `at_body`.
   joint,    ///< The freedom of a joint: `joint`.
   joints,   ///< Free coordinates of two joints: `joints`.

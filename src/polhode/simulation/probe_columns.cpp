@@ -69,8 +69,10 @@ std::vector<std::string> joint_header(const Model& model, const JointSpec& spec)
 std::vector<std::string> load_header(const LoadSpec& spec) {
   std::vector<std::string> header;
   for (const LoadChannel& channel : load_kind(spec.type).channels) {
-    if (channel.size == 3)
-      append(header, vector_header(channel.name.substr(0, 1), channel.unit));
+    if (channel.size == 3)  // by its letter, which is an acceleration's of an angular momentum
+      append(header,
+             vector_header(channel.unit == "N m s" ? channel.name + " " : channel.name.substr(0, 1),
+                           channel.unit));
     else
       header.push_back(format("{} [{}]", channel.name, channel.unit));
   }

@@ -270,7 +270,7 @@ struct Simulation::Impl {
     start_seconds = wall_clock() - t0;
   }
 
-  /// Rejects jumps of prescribed positions, which no force can produce.
+  /// Rejects jumps of prescribed positions and of speeds of rotors, which no force can produce.
   void refuse_jumps() const {
     if (statics) return;
     for (const SolidSpec& solid : model.solids)
@@ -279,10 +279,12 @@ struct Simulation::Impl {
           if (p.displacement[c])
             refuse_jumps(format("solids.{}.prescribed.{}.{}", solid.name, p.name, "xyz"[c]),
                          *p.displacement[c], "m");
-    for (const LoadSpec& load : model.loads)
+    for (const LoadSpec& load : model.loads) {
+      const std::string where = format("loads.{}.{}", load.name, load.drive);
       if (load.type.ends_with("motor") && (load.drive == "angle" || load.drive == "displacement"))
-        refuse_jumps(format("loads.{}.{}", load.name, load.drive), *load.value,
-                     load.drive == "angle" ? "rad" : "m");
+        refuse_jumps(where, *load.value, load.drive == "angle" ? "rad" : "m");
+      if (load.type == "rotor" && load.drive == "speed") refuse_jumps(where, *load.value, "rad/s");
+    }
   }
   void refuse_jumps(const std::string& where, const TimeFunction& d, const char* unit) const {
     TimeBreak at;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/engines/tree_engine.hpp>
+#include <polhode/loads/rotor.hpp>
 #include <polhode/stepping/ledger.hpp>
 
 namespace polhode {
@@ -28,11 +29,17 @@ std::vector<int> with_work(const System& system) {
   return list;
 }
 
+/// Whether an interaction is the moment of a rotor, whose momentum counts as that of a body.
+bool is_rotor(const System& system, const InteractionRef& ref) {
+  return system.group(ref.group).is_of(kTypeTag<Rotor>);
+}
+
 std::vector<int> on_the_ground(const System& system, const NewtonEngine& engine) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
-    const bool one_body = (ref.a == kGround) != (ref.b == kGround) && !engine.knows_ground(i);
+    const bool one_body = (ref.a == kGround) != (ref.b == kGround) && !engine.knows_ground(i) &&
+                          !is_rotor(system, ref);
     if (one_body || system.traits(ref).holds_ground) list.push_back(i);
   }
   return list;
@@ -92,6 +99,18 @@ BodySums EnergyLedger::sums(const State& state) const {
     if (a < 0 || b < 0) continue;  // the ground's side is external: its impulse is counted
     const Vec3 l = mass * (of(&BodyBlock::r, b) - of(&BodyBlock::r, a)).cross(v);
     for (int i = 0; i < 3; ++i) s.l[i] -= l[i];
+  }
+  for (const int i : working_) {  // @eq{rotor-work}
+    const InteractionRef& ref = system_->interactions()[i];
+    if (!is_rotor(*system_, ref)) continue;
+    const Rotor& rotor =
+        items_of<Rotor>(system_->group(ref.group))[static_cast<std::size_t>(ref.item)];
+    const double* history = state.history.data() + ref.first_history;
+    const BodyStep b = system_->instant(state, ref.b);
+    const Vec3 momentum = rotor.added_momentum(b, history);
+    s.kinetic += rotor.added_energy(b, history);
+    s.l_scale += momentum.norm();
+    for (int k = 0; k < 3; ++k) s.l[k] += momentum[k];
   }
   return s;
 }

@@ -75,8 +75,8 @@ void refuse_controlled_motion(ReadContext& context) {
     return std::any_of(functions.begin(), functions.end(), is_controlled);
   };
   for (const LoadSpec& load : context.model.loads)
-    if (load.type.ends_with("motor") && load.drive != "moment" && load.drive != "force" &&
-        is_controlled(load.value))
+    if ((load.type.ends_with("motor") || load.type == "rotor") && load.drive != "moment" &&
+        load.drive != "force" && is_controlled(load.value))
       refuse(load.place, format("loads.{}.{}", load.name, load.drive));
   for (const JointSpec& joint : context.model.joints)
     if (joint.motion && (any(joint.motion->displacement) || any(joint.motion->parameters)))

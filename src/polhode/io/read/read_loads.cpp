@@ -84,6 +84,10 @@ class LoadReader {
       case LoadPlace::body:
         read_wrench(kind);
         break;
+      case LoadPlace::axis:
+        read_wrench(kind);
+        read_axis();
+        break;
       case LoadPlace::points:
         read_bodies();
         read_points();
@@ -205,6 +209,17 @@ class LoadReader {
     if (!table_.find("other_x_axis")) return;
     if (const auto x_b = section_.direction("other_x_axis"))
       if (const auto F_b = axes_about(z, *x_b, "other_x_axis")) load_.R_b = axes_on(load_.b, *F_b);
+  }
+
+  /// An axis fixed in the body.
+  void read_axis() {
+    if (section_.refuse_both("axis", "axis_body", "Give one of them.")) return;
+    const bool in_body = section_.has("axis_body");
+    const auto axis = section_.direction(in_body ? "axis_body" : "axis");
+    const Vec3 z = axis.value_or(Vec3::UnitZ());
+    load_.R_b.col(2) = in_body ? z : Vec3(axes_on(load_.b, Mat3::Identity()) * z);
+    if (!section_.has("speed")) return;
+    section_.refuse_both("speed", "start_speed", "Leave start_speed out: the speed is given.");
   }
 
   /// Axes with this z and this x, made perpendicular to it.

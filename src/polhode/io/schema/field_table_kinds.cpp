@@ -185,6 +185,12 @@ const Field kBodyFixed{.name = "body_fixed",
                        .kind = kBoolean,
                        .meaning = "The components rotate with the body.",
                        .standard = "false"};
+const Field kBodyAxis{.name = "axis",
+                      .kind = kDirection,
+                      .meaning = "The axis at the start, world; or axis_body.",
+                      .standard = "z"};
+const Field kBodyAxisBody{
+    .name = "axis_body", .kind = kDirection, .meaning = "The axis in the body's axes."};
 const Field kLoadBodies{.name = "bodies", .kind = kBodyPair, .meaning = "[a, b]", .required = true};
 const Field kLoadPointsBody{
     .name = "at_body",
@@ -234,6 +240,9 @@ KindTable load_table(const LoadKind& kind) {
       fields.push_back(kLoadBody);
       if (!kind.turns && !kind.vector.empty())
         fields.insert(fields.end(), {kBodyPointAt, kBodyPoint});
+      break;
+    case LoadPlace::axis:
+      fields.insert(fields.end(), {kLoadBody, kBodyAxis, kBodyAxisBody});
       break;
     case LoadPlace::points:
       fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody});
