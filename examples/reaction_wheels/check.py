@@ -41,11 +41,14 @@ def main():
         report.below(what, largest(fine, [exact(t) for t in times]), tolerance)
 
     assert len(half) == len(times[::2])
+    def scaled(factor, function):
+        return lambda t: factor * function(t)
+
     for axis, J in INERTIA.items():
         share = DIRECTION[axis]
-        compare(f"rotation about {axis}, largest difference [rad]", "satellite", f"theta{axis}", lambda t: share * angle(t), 1)
-        compare(f"momentum of the wheel {axis}, likewise [N m s]", axis, "axial_momentum", lambda t: -J * share * rate(t), 3)
-        compare("its speed [rad/s]", axis, "speed", lambda t: -(J / WHEEL + 1) * share * rate(t), 50)
+        compare(f"rotation about {axis}, largest difference [rad]", "satellite", f"theta{axis}", scaled(share, angle), 1)
+        compare(f"momentum of the wheel {axis}, likewise [N m s]", axis, "axial_momentum", scaled(-J * share, rate), 3)
+        compare("its speed [rad/s]", axis, "speed", scaled(-(J / WHEEL + 1) * share, rate), 50)
     works = [sum(run.probe(axis)["work"][k] for axis in INERTIA) for k in range(len(times))]
     rough = [sum(coarse.probe(axis)["work"][k] for axis in INERTIA) for k in range(len(half))]
     report.below("work of all wheels, largest difference [J]", largest(works, [energy(t) for t in times]),
