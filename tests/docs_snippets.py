@@ -4,7 +4,8 @@
 and checks every complete model of the other pages.
 
 Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
-after the other in one folder. POLHODE names the program. With page names as arguments only those are run.
+after the other in one folder, and what its consoles show is what the program prints. docs_tutorials.py runs the pages of docs/tutorials
+in this way. POLHODE names the program. With page names as arguments only those are run.
 """
 import os
 import pathlib
@@ -19,31 +20,35 @@ POLHODE = os.environ.get("POLHODE", str(ROOT / "build/release/apps/polhode/polho
 BLOCK = re.compile(r"Save this as `(?P<file>[\w.]+)`|^```(?P<language>\w*)\n(?P<text>.*?)^```$", re.M | re.S)
 
 
-def run_page(page):
-    """Faults of a page, and the number of commands that ran."""
+def run_page(page, folder):
+    """Faults of a page whose commands run in a folder, and the number of commands that ran. Sweeps and fits are left to
+    python/tests/test_docs.py: they need the Python package."""
     count, name, faults = 0, None, []
-    with tempfile.TemporaryDirectory() as folder:
-        for block in BLOCK.finditer(page.read_text()):
-            if block["file"]:
-                name = block["file"]
-            elif block["language"] == "yaml":
-                if name is None:
-                    faults.append(f"{page.name}: a model without a name")
+    for block in BLOCK.finditer(page.read_text()):
+        lines = (block["text"] or "").splitlines()
+        if block["file"]:
+            name = block["file"]
+        elif block["language"] == "yaml":
+            if name is None:
+                faults.append(f"{page.name}: a model without a name")
+                continue
+            (folder / name).write_text(block["text"])
+            name = None
+        elif block["language"] in ("sh", "console"):
+            shown = block["language"] == "console"
+            for line in [lines[0].removeprefix("$ ")] if shown else lines:
+                words = shlex.split(line, comments=True)
+                if not words or words[1:2] in (["sweep"], ["fit"]):
                     continue
-                (pathlib.Path(folder) / name).write_text(block["text"])
-                name = None
-            elif block["language"] == "sh":
-                for line in block["text"].splitlines():
-                    words = shlex.split(line, comments=True)
-                    if not words:
-                        continue
-                    if words[0] != "polhode":
-                        faults.append(f"{page.name}: '{line}' is not a command of polhode")
-                        continue
-                    done = subprocess.run([POLHODE, *words[1:]], cwd=folder, capture_output=True, text=True, check=False, timeout=240)
-                    count += 1
-                    if done.returncode != 0:
-                        faults.append(f"{page.name}: '{line}' ends with {done.returncode}\n{done.stderr[-800:]}")
+                if words[0] != "polhode":
+                    faults.append(f"{page.name}: '{line}' is not a command of polhode")
+                    continue
+                done = subprocess.run([POLHODE, *words[1:]], cwd=folder, capture_output=True, text=True, check=False, timeout=240)
+                count += 1
+                if done.returncode != 0:
+                    faults.append(f"{page.name}: '{line}' ends with {done.returncode}\n{done.stderr[-800:]}")
+                if shown and not same_output(done.stdout.splitlines(), lines[1:]):
+                    faults.append(f"{page.name}: '{line}' prints other lines\n{done.stdout}")
     return count, faults
 
 
@@ -112,7 +117,8 @@ def main(wanted):
     pages = [p for p in sorted((ROOT / "docs/quick_start").glob("*.md")) if not wanted or p.stem in wanted]
     problems = []
     for page in pages:
-        count, faults = run_page(page)
+        with tempfile.TemporaryDirectory() as folder:
+            count, faults = run_page(page, pathlib.Path(folder))
         print(f"{page.name}: {count} commands, {len(faults)} faults")
         problems += faults + ([f"{page.name} has no commands"] if count == 0 else [])
     for page, count in (("README.md", 1), ("docs/tour.md", 4)):
@@ -121,7 +127,7 @@ def main(wanted):
     others = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     checked = 0
     for page in others:
-        if page.parent.name != "quick_start" and (not wanted or page.stem in wanted):
+        if page.parent.name not in ("quick_start", "tutorials") and (not wanted or page.stem in wanted):
             count, faults = check_models(page)
             checked += count
             problems += faults

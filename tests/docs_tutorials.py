@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The tutorials against independent solutions: every command of a page is run, and motions, forces and the numbers that the page
+states are compared with closed forms and with equations integrated here.
+
+* machine_designer: Newton's and Euler's equations of the slider-crank at constant speed, with friction; Lagrange's equation with the motor.
+* lecturer: Jacobi's elliptic functions for the free body; Euler's equations for the sweep.
+
+POLHODE names the program. Sweeps need the Python package; python/tests/test_docs.py runs them and compares them with what is here.
+"""
+import csv
+import math
+import pathlib
+import re
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import docs_numbers  # noqa: E402
+import docs_snippets  # noqa: E402
+
+PAGES = docs_numbers.ROOT / "docs/tutorials"
+
+
+def stated(text, pattern):
+    """The number of a page that a pattern finds."""
+    found = re.search(pattern, text)
+    assert found, f"the page does not state {pattern}"
+    return float(found[1])
+
+
+def table(path):
+    """Columns of a table by their names without units."""
+    with path.open() as file:
+        head, *rows = csv.reader(file)
+    return {title.split(" [")[0]: [float(row[at]) for row in rows] for at, title in enumerate(head)}
+
+
+class Pump:
+    """The slider-crank of the pump, in the plane; the crank turns about +y from x towards -z."""
+
+    GRAVITY, STEEL, SLIP = 9.81, 7800.0, 0.02
+
+    def __init__(self, crank=0.03, rod=0.12, wheel=0.4, water=2500.0):
+        self.r, self.l, self.water = crank, rod, water
+        self.arm = self.STEEL * crank * 0.02 * 0.03
+        flywheel = self.STEEL * math.pi / 4 * wheel**2 * 0.06
+        self.shaft = self.arm * ((crank**2 + 0.03**2) / 12 + crank**2 / 4) + flywheel * wheel**2 / 8
+        self.weight_of_wheel = flywheel * self.GRAVITY
+        self.rod = self.STEEL * rod * 0.015 * 0.02
+        self.turn = self.rod * (rod**2 + 0.02**2) / 12
+        self.plunger = self.STEEL * math.pi / 4 * 0.025**2 * 0.08
+
+    def place(self, phi):
+        """Pin, angle of the rod above x, and place of the plunger."""
+        pin = self.r * math.cos(phi), -self.r * math.sin(phi)
+        beta = math.asin(self.r * math.sin(phi) / self.l)
+        return pin, beta, pin[0] + self.l * math.cos(beta)
+
+    def slopes(self, phi):
+        """First and second derivatives by phi of the rod's angle and of the plunger's place."""
+        s, c = math.sin(phi), math.cos(phi)
+        sin_b = self.r * s / self.l
+        cos_b = math.sqrt(1 - sin_b**2)
+        b1 = self.r * c / (self.l * cos_b)
+        b2 = (b1**2 * sin_b - self.r * s / self.l) / cos_b
+        x1 = -self.r * s - self.l * sin_b * b1
+        x2 = -self.r * c - self.l * (cos_b * b1**2 + sin_b * b2)
+        return b1, b2, x1, x2
+
+    def force(self, speed):
+        """Force of the water on the plunger."""
+        return -self.water * min(max(speed / self.SLIP, 0.0), 1.0)
+
+    def at_speed(self, phi, rate, mu=0.0, pin_mu=0.0, pin_radius=0.0):
+        """Moment of the motor, forces in the main bearing and in the pin, and force of the guide, at constant speed."""
+        g, square = self.GRAVITY, rate**2
+        pin, beta, _ = self.place(phi)
+        b1, b2, x1, x2 = self.slopes(phi)
+        d = self.l / 2 * math.cos(beta), self.l / 2 * math.sin(beta)
+        pin_acceleration = -self.r * math.cos(phi) * square, self.r * math.sin(phi) * square
+        middle = (pin_acceleration[0] + (-d[1] * b2 - d[0] * b1**2) * square, pin_acceleration[1] + (d[0] * b2 - d[1] * b1**2) * square)
+        held = self.rod * middle[0], self.rod * (middle[1] + g)
+        speed, friction = x1 * rate, 0.0
+        for _ in range(60):  # friction depends on the guide's force, and this on friction
+            rx = self.plunger * x2 * square - self.force(speed) + friction
+            # Moments about the rod's middle, with the eye's force -R at its end and P = held + R at the pin.
+            rz = (self.turn * -b2 * square + 2 * d[1] * rx + d[1] * held[0] - d[0] * held[1]) / (2 * d[0])
+            guide = self.plunger * g - rz
+            friction = mu * abs(guide) * (1 if speed > 0 else -1)
+        p = held[0] + rx, held[1] + rz
+        half = self.r / 2 * math.cos(phi), -self.r / 2 * math.sin(phi)
+        main = (p[0] - self.arm * half[0] * square, p[1] + self.arm * (g - half[1] * square) + self.weight_of_wheel)
+        moment = pin[1] * p[0] - pin[0] * p[1] - half[0] * self.arm * g + pin_mu * pin_radius * math.hypot(*main)
+        return moment, main, p, guide
+
+    def inertia(self, phi):
+        b1, _, x1, _ = self.slopes(phi)
+        pin, beta, _ = self.place(phi)
+        middle = pin[1] - self.l / 2 * math.sin(beta) * b1, -pin[0] + self.l / 2 * math.cos(beta) * b1
+        return self.shaft + self.plunger * x1**2 + self.rod * (middle[0] ** 2 + middle[1] ** 2) + self.turn * b1**2
+
+    def height(self, phi):
+        """Potential energy."""
+        pin, beta, _ = self.place(phi)
+        return self.GRAVITY * (self.arm * pin[1] / 2 + self.rod * (pin[1] + self.l / 2 * math.sin(beta)))
+
+    def driven(self, times, slip=10.0, step=2e-4):
+        """Angles and rates with a motor of the moment slip (300 rpm - rate), by Lagrange's equation."""
+        full, h = 10 * math.pi, 1e-5
+
+        def rate(_, state):
+            phi, w = state
+            inertia = (self.inertia(phi + h) - self.inertia(phi - h)) / (2 * h)
+            weight = (self.height(phi + h) - self.height(phi - h)) / (2 * h)
+            x1 = self.slopes(phi)[2]
+            return [w, (slip * (full - w) + self.force(x1 * w) * x1 - inertia * w * w / 2 - weight) / self.inertia(phi)]
+
+        return docs_numbers.integrated(rate, [0.0, full], times, step)
+
+
+def machine_designer(text, folder):
+    pump, speed = Pump(), 10 * math.pi
+    errors = []
+
+    def compare(results, **friction):
+        motor, main, guide = (table(folder / results / f"probes/{name}.csv") for name in ("motor", "main", "guide"))
+        worst, top = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+        for at, t in enumerate(motor["t"]):
+            phi = speed * t
+            moment, force, pin, carried = pump.at_speed(phi, speed, **friction)
+            top = [max(a, b) for a, b in zip(top, (moment, math.hypot(*force), math.hypot(*pin)))]
+            if abs(math.sin(phi)) < 0.03:  # the plunger turns round: friction is in its bristles
+                continue
+            found = motor["my"][at], math.hypot(main["fx"][at], main["fz"][at]), guide["fz"][at]
+            worst = [max(w, abs(a - b)) for w, a, b in zip(worst, found, (moment, math.hypot(*force), carried))]
+        return motor, worst, top
+
+    motor, worst, top = compare("pump.results")
+    errors += [w / 1e-6 for w in worst]
+    place = pump.place(0)[2]
+    guide = table(folder / "pump.results/probes/guide.csv")
+    errors.append(max(abs(z - pump.place(speed * t)[2] + place) for t, z in zip(guide["t"], guide["z"])) / 1e-12)
+    assert abs(stated(text, r"at most ([\d.]+) N m") - top[0]) < 0.02, top
+    assert abs(stated(text, r"main bearing carries up to ([\d.]+) N") - top[1]) < 0.6, top
+    assert abs(stated(text, r"pin of the crank ([\d.]+) N") - top[2]) < 0.6, top
+    assert abs(motor["work"][-1] - 4 * pump.r * pump.water) < 0.1  # two strokes against the water; closing valves take the rest
+    assert abs(stated(text, r"([\d.]+) W on average") - 4 * pump.r * pump.water / 0.4) < 0.6
+
+    rubbing, rough, _ = compare("friction.results", mu=0.1, pin_mu=0.02, pin_radius=0.025)
+    errors += [rough[0] / 1e-2, rough[1] / 2e-1]
+    steps = 4000
+    work = sum(pump.at_speed(4 * math.pi * (k + 0.5) / steps, speed, 0.1, 0.02, 0.025)[0] for k in range(steps)) * 4 * math.pi / steps
+    assert abs(rubbing["work"][-1] - work) < 0.05, (rubbing["work"][-1], work)
+    assert abs(stated(text, r"raises the average power to ([\d.]+) W") - work / 0.4) < 0.6, work / 0.4
+
+    driven = table(folder / "driven.results/probes/motor.csv")
+    exact = pump.driven(driven["t"])
+    errors += [max(abs(a - s[0]) for a, s in zip(driven["angle"], exact)) / 1e-5, max(abs(a - s[1]) for a, s in zip(driven["rate"], exact)) / 1e-4]
+    peak = max(10 * (speed - w) for _, w in exact)
+    assert abs(stated(text, r"it peaks at ([\d.]+) N m") - peak) < 0.06, peak
+
+    by_crank = -(1 + pump.r / math.sqrt(pump.l**2 - pump.r**2))  # a quarter of a turn
+    by_rod = pump.l / math.sqrt(pump.l**2 - pump.r**2) - 1
+    assert abs(stated(text, r"([\d.]+) mm per mm of the crank") + by_crank) < 6e-4 and abs(stated(text, r"([\d.]+) mm per mm of the rod") - by_rod) < 6e-4
+    return f"moment within {worst[0]:.1e} N m, forces within {worst[1]:.1e} N, driven angle within {errors[-2] * 1e-5:.1e} rad", max(errors)
+
+
+def check(page, compare, folder):
+    """What is said about a page, and the largest error over what is allowed."""
+    count, faults = docs_snippets.run_page(page, folder)
+    assert not faults, faults
+    said, error = compare(page.read_text(), folder)
+    return f"{count} commands, {said}", error
+
+
+def main():
+    faults = 0
+    for compare in (machine_designer,):
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                said, error = check(PAGES / f"{compare.__name__}.md", compare, pathlib.Path(folder))
+            except Exception as fault:  # noqa: BLE001 - the other pages are checked, too
+                said, error = repr(fault), math.inf
+        faults += not error <= 1
+        print(f"{compare.__name__}: {said}" + ("" if error <= 1 else f"  FAILED, {error:.1f} times the allowed error"))
+    return faults > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
