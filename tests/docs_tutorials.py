@@ -4,11 +4,12 @@
 states are compared with closed forms and with equations integrated here.
 
 * machine_designer: Newton's and Euler's equations of the slider-crank at constant speed, with friction; Lagrange's equation with the motor.
-* lecturer: Jacobi's elliptic functions for the free body; Euler's equations for the sweep.
+* lecturer: Jacobi's elliptic functions for the free body, and balances computed from its rates.
 
 POLHODE names the program. Sweeps need the Python package; python/tests/test_docs.py runs them and compares them with what is here.
 """
 import csv
+import json
 import math
 import pathlib
 import re
@@ -166,6 +167,87 @@ def machine_designer(text, folder):
     return f"moment within {worst[0]:.1e} N m, forces within {worst[1]:.1e} N, driven angle within {errors[-2] * 1e-5:.1e} rad", max(errors)
 
 
+class FreeBody:
+    """Jacobi's solution of Euler's equations for moments that grow, where H² > 2 E I2 (Landau and Lifshitz, Mechanics, section 37)."""
+
+    def __init__(self, inertia, start):
+        self.inertia = i1, i2, i3 = inertia
+        twice, square = sum(i * w * w for i, w in zip(inertia, start)), sum((i * w) ** 2 for i, w in zip(inertia, start))
+        assert i1 < i2 < i3 and square > twice * i2
+        self.sizes = (math.sqrt((twice * i3 - square) / (i1 * (i3 - i1))), math.sqrt((twice * i3 - square) / (i2 * (i3 - i2))),
+                      math.sqrt((square - twice * i1) / (i3 * (i3 - i1))))
+        self.m = (i2 - i1) * (twice * i3 - square) / ((i3 - i2) * (square - twice * i1))
+        self.rate = math.sqrt((i3 - i2) * (square - twice * i1) / (i1 * i2 * i3))
+        self.quarter = docs_numbers.quarter_period(self.m)
+        self.half_period = 2 * self.quarter / self.rate
+        wanted = math.atan2(start[1] / self.sizes[1], start[0] / self.sizes[0])
+        low, high = 0.0, self.quarter  # sn and cn of the start are positive
+        for _ in range(200):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self.amplitude(middle) < wanted else (low, middle)
+        self.first = (2 * self.quarter - low) / self.rate  # the next zero of sn
+        self.start = low
+
+    def amplitude(self, u):
+        """Jacobi's am(u | m), by means of arithmetic and geometric means."""
+        a, b, ratios, n = 1.0, math.sqrt(1 - self.m), [], 0
+        while abs(a - b) > 1e-15 * a:
+            a, b, c = (a + b) / 2, math.sqrt(a * b), (a - b) / 2
+            ratios.append(c / a)
+            n += 1
+        phi = 2**n * a * u
+        for ratio in reversed(ratios):
+            phi = (phi + math.asin(ratio * math.sin(phi))) / 2
+        return phi
+
+    def at(self, t):
+        phi = self.amplitude(self.start + self.rate * t)
+        return [self.sizes[0] * math.cos(phi), self.sizes[1] * math.sin(phi), self.sizes[2] * math.sqrt(1 - self.m * math.sin(phi) ** 2)]
+
+
+def book(nudge=0.06):
+    return FreeBody([0.8 / 12 * (a * a + b * b) for a, b in ((0.16, 0.03), (0.24, 0.03), (0.24, 0.16))], [nudge, 6.0, nudge])
+
+
+def changes_of_sign(times, values):
+    """By straight lines between frames."""
+    return [t + (u - t) * a / (a - b) for t, u, a, b in zip(times, times[1:], values, values[1:]) if a * b < 0]
+
+
+def lecturer(text, folder):
+    exact = book()
+    seen = table(folder / "book.results/probes/seen.csv")
+    found = [[-seen[name][k] for name in ("wx", "wy", "wz")] for k in range(len(seen["t"]))]
+    error = docs_numbers.largest(found, [exact.at(t) for t in seen["t"]])
+    assert stated(text, r"of any component is ([\de-]+) rad") == float(f"{error:.0e}"), error
+    turns = changes_of_sign(seen["t"], seen["wy"])
+    assert len(turns) == 3 and max(abs(t - exact.first - k * exact.half_period) for k, t in enumerate(turns)) < 5e-5
+    assert abs(stated(text, r"for the first time after ([\d.]+) s") - exact.first) < 6e-4, exact.first
+    assert abs(stated(text, r"and then every ([\d.]+) s") - exact.half_period) < 6e-4, exact.half_period
+
+    coarse = table(folder / "coarse.results/probes/seen.csv")
+    late = changes_of_sign(coarse["t"], coarse["wy"])[0] - exact.first
+    assert 0.005 < abs(late) < 0.015, late  # the page says 0.01 s, and that two balances are not worse for it:
+    i1, i2, i3 = exact.inertia
+    for name, power in (("energy", 1), ("momentum", 2)):
+        kept = [i1**power * x * x + i2**power * y * y + i3**power * z * z for x, y, z in zip(coarse["wx"], coarse["wy"], coarse["wz"])]
+        assert max(abs(k / kept[0] - 1) for k in kept) < 5e-14, name
+
+    lam = 6 * math.sqrt((i2 - i1) * (i3 - i2) / (i1 * i3))
+    assert abs(stated(text, r"here ([\d.]+) per second") - lam) < 6e-3 and abs(stated(text, r"= ([\d.]+) s\. The experiment") - math.log(10) / lam) < 6e-4
+    delays = [book(nudge).first for nudge in (0.6, 0.06, 0.006, 0.0006)]
+    shown = [float(cell) for cell in re.search(r"^\| first change of sign \[s\] \| (.*) \|$", text, re.M)[1].split("|")]
+    assert max(abs(a - b) for a, b in zip(shown, delays)) < 6e-4, delays
+    steps = [float(step) for step in re.search(r"differences are ([\d.]+), ([\d.]+) and ([\d.]+) s", text).groups()]
+    assert max(abs(a - (v - u)) for a, u, v in zip(steps, delays, delays[1:])) < 6e-4
+    for order in (2, 4):
+        found = json.loads((folder / f"order{order}/certificate.json").read_text())
+        rates = next(q for q in found["quantities"] if "wx" in q["columns"])
+        assert abs(rates["order"] - order) < 0.05, rates["order"]
+    assert 0.5 * error < rates["own_error"] < 2 * error, (rates["own_error"], error)  # the bar of the run that is compared above
+    return f"rates within {error:.1e} rad/s, turns over every {exact.half_period:.4f} s", error / 1e-6
+
+
 def check(page, compare, folder):
     """What is said about a page, and the largest error over what is allowed."""
     count, faults = docs_snippets.run_page(page, folder)
@@ -176,7 +258,7 @@ def check(page, compare, folder):
 
 def main():
     faults = 0
-    for compare in (machine_designer,):
+    for compare in (machine_designer, lecturer):
         with tempfile.TemporaryDirectory() as folder:
             try:
                 said, error = check(PAGES / f"{compare.__name__}.md", compare, pathlib.Path(folder))

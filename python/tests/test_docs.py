@@ -84,6 +84,29 @@ def test_the_sweeps_of_the_pump_are_those_of_its_equations(tutorials: Any, tmp_p
     assert (tmp_path / "wheel.svg").stat().st_size > 5000
 
 
+def test_script_and_sweep_of_the_book(tutorials: Any, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import numpy as np
+
+    monkeypatch.chdir(tmp_path)
+    page = ROOT / "docs/tutorials/lecturer.md"
+    rows = sweeps_of(page, tmp_path)["delays.csv"]
+    delays = [tutorials.book(row["variables.nudge"]).first for row in rows]
+    assert len(rows) == 4
+    assert [row["first(probes.seen.wy > 0)"] for row in rows] == pytest.approx(delays, abs=1e-4)
+    scripts = SNIPPET.findall(page.read_text())
+    names = execute(scripts, page)
+    assert len(scripts) == 1 and (tmp_path / "polhodes.png").stat().st_size > 10000
+    lines = [np.array(line.get_xdata()) for line in names["left"].lines]
+    exact = np.array([tutorials.book().at(t) for t in lines[0]])
+    shown = np.array([line.get_ydata() for line in names["left"].lines]).T
+    assert np.abs(shown - exact).max() < 1e-6
+    assert len(names["right"].lines) == 28
+    points = np.hstack([line.get_data_3d() for line in names["right"].lines])
+    points = points[:, np.isfinite(points[0])]
+    energies = names["inertia"] @ np.square(points) / 2  # on the ellipsoid
+    assert len(energies) > 10000 and np.abs(energies - 0.07).max() < 1e-12
+
+
 def test_the_four_bar_of_the_readme_runs(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     own = [s for s in SNIPPET.findall((ROOT / "README.md").read_text()) if "import polhode" in s]
