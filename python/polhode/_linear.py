@@ -261,7 +261,7 @@ def inverse_dynamics(
     """
     from scipy.interpolate import CubicSpline
 
-    from ._run import run
+    from ._run import whole_run
 
     whole = (model if isinstance(model, Model) else load(model)).copy()
     times = np.asarray(time, dtype=float)
@@ -272,7 +272,7 @@ def inverse_dynamics(
         whole.add_load(f"drives-{joint}", "linear_motor" if slides else "rotary_motor", joint=joint, **drive)
     whole.analysis.duration = f"{float(times[-1])!r} s"
     whole.output.every = None
-    found = run(whole, overrides=overrides, progress=False)
+    found = whole_run(whole, overrides)
     result = {}
     for joint in motion:
         report = found.loads[f"drives-{joint}"]

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import json
 import logging
+import math
 import os
 import warnings
+from collections.abc import Mapping
 from typing import Any, Optional, Union
 
 from . import _native
@@ -18,6 +20,7 @@ from ._result import Result
 from ._stores import MemoryStore
 
 _log = logging.getLogger("polhode")
+_FRAMES = 10000  #: Largest number of steps for which each is a frame by default.
 
 
 def run(
@@ -34,14 +37,24 @@ def run(
     output:    a folder for the files that `polhode run -o` writes; None: results in memory only.
     progress:  show a bar with tqdm; None: if tqdm is installed and the run takes more than a second.
 
-    Frames are stored at output.every, by default after every step. Other Python threads continue during the
-    run. Ctrl-C stops it: the result then has the frames so far, and its `end` is "interrupted".
+    Frames are stored at output.every. Without it they are all steps, but for runs in memory of more than
+    10,000 fixed steps: then equally spaced ones, at most 10,001, which the log says. Probes without a rate of their own
+    have a row for each step. Other Python threads continue during the run. Ctrl-C stops it: the result then has the
+    frames so far, and its `end` is "interrupted".
     Raises ModelError for a model with faults, NotConverged (with `result`) if a step does not
     converge, OSError if the folder cannot be written.
     """
+    return _run(model, overrides, output, progress, False)
+
+
+def _run(model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides,
+         output: "Union[str, os.PathLike[str], None]", progress: "Optional[bool]", all_steps: bool) -> Result:
+    """A run as above; with all_steps they are frames without output.every, however many."""
     if not isinstance(model, Model):
         model = load(model)
     compiled = model._compile(overrides)
+    if not all_steps and output is None and (thinned := _thinned(model, compiled, overrides or {})):
+        compiled = model._compile({**(overrides or {}), **thinned})
     if compiled.analysis == "modes":
         raise fault("analysis.type", "an analysis of modes has no motion", "Call polhode.modes(model)")
     engine = _native.Engine(compiled)
@@ -64,9 +77,29 @@ def run(
     return result
 
 
+def _thinned(model: Model, compiled: "_native.CompiledModel", overrides: "Mapping[str, Any]") -> "dict[str, Any]":
+    """Changes of a model that has no output.every and many fixed steps, by which every n-th step is a frame; the steps
+    and the rows of its probes stay."""
+    step = compiled.step
+    if compiled.analysis != "dynamics" or step is None or compiled.duration <= _FRAMES * step * (1 + 1e-9):
+        return {}
+    if model.output.get("every") is not None or any(k == "output" or k == "output.every" for k in overrides):
+        return {}
+    steps = math.ceil(compiled.duration / step * (1 - 1e-9))
+    each = math.ceil(steps / _FRAMES)
+    _log.info("a frame is stored every %g s, each %d of some %d steps; output.every gives another time",
+              each * step, each, steps)
+    changes: "dict[str, Any]" = {"output.every": f"{each * step!r} s"}
+    for name, probe in (model.output.get("probes") or {}).items():
+        if probe.get("every") is None and f"output.probes.{name}.every" not in overrides:
+            changes[f"output.probes.{name}.every"] = f"{step * 1e-6!r} s"  # due at the end of each step
+    return changes
+
+
 def whole_run(model: Model, overrides: Overrides) -> Result:
-    """A run of a study. Raises KeyboardInterrupt if Ctrl-C stops it: its results would be taken for whole ones."""
-    result = run(model, overrides=overrides, progress=False)
+    """A run of a study, with all its steps as frames. Raises KeyboardInterrupt if Ctrl-C stops it: its results would be
+    taken for whole ones."""
+    result = _run(model, overrides, None, False, True)
     if result.end == "interrupted":
         raise KeyboardInterrupt
     return result
@@ -78,6 +111,6 @@ def _report(ledger: "dict[str, Any]") -> None:
         _log.info(line)
     _log.info("reached t = %g in %d steps, %.3g s", ledger["t"], ledger["steps"], ledger["wall_time_s"])
     for warning in ledger["warnings"]:
-        warnings.warn(warning, stacklevel=3)
+        warnings.warn(warning, stacklevel=4)
     if ledger["end"] == "interrupted":
-        warnings.warn(f"the run was stopped at t = {ledger['t']:g} s", stacklevel=3)
+        warnings.warn(f"the run was stopped at t = {ledger['t']:g} s", stacklevel=4)

@@ -266,7 +266,7 @@ def test_probes_are_fitted_too_and_a_stopped_run_stops_the_fit(monkeypatch: pyte
         assert fit.parameters["variables.k"] == pytest.approx(40, rel=1e-5)
     stopped = polhode.run(m, progress=False)
     stopped._ledger = {**(stopped._ledger or {}), "end": "interrupted"}
-    monkeypatch.setattr("polhode._run.run", lambda *_, **__: stopped)
+    monkeypatch.setattr("polhode._run._run", lambda *_, **__: stopped)
     with pytest.raises(KeyboardInterrupt):
         polhode.fit(m, data, {"variables.k": 37.0})
 

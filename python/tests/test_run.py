@@ -19,6 +19,7 @@ from scipy.integrate import solve_ivp
 
 import polhode
 from conftest import ROOT, make_pendulum
+from polhode import _run
 
 Array = npt.NDArray[np.float64]
 CLI = os.path.join(os.path.dirname(polhode.__file__), "bin", "polhode")
@@ -235,6 +236,38 @@ print(r.end, 1 < r.ledger.t < 3600, r.frames > 1, flush=True)
         time.sleep(1.5)
         process.send_signal(signal.SIGINT)
         assert process.communicate(timeout=60)[0] == "interrupted True True\n"
+
+
+@pytest.mark.parametrize(("duration", "step", "each"), [(1, "20 us", 5), (1.00003, "20 us", 6), (2, "0.0333333 ms", 7),
+                                                        ("1000 ms", "30 us", 4)])
+def test_long_runs_keep_every_nth_step(pendulum: polhode.Model, duration: object, step: str, each: int,
+                                       caplog: pytest.LogCaptureFixture) -> None:
+    pendulum.analysis.update(duration=duration, step=step)
+    pendulum.add_probe("tip", body="arm", point=[0.5, 0, 0])
+    pendulum.add_probe("seldom", body="arm", every="0.1 s")
+    with caplog.at_level("INFO", logger="polhode"):
+        r = polhode.run(pendulum)
+    assert [m for m in caplog.messages if m.startswith("a frame is stored")] == [caplog.messages[0]]
+    assert f"each {each} of some" in caplog.messages[0]
+    whole = _run.whole_run(pendulum, None)
+    assert r.ledger.result_hash == whole.ledger.result_hash and r.ledger.steps == whole.ledger.steps
+    assert len(whole.time) == whole.ledger.steps + 1 and 5000 < len(r.time) <= 10001
+    kept = np.isin(whole.time, r.time)
+    assert kept.sum() == len(r.time) and kept[-1]
+    assert (whole.bodies["arm"].position[kept] == r.bodies["arm"].position).all()
+    assert (r.probes["tip"].z == whole.probes["tip"].z).all() and len(r.probes["tip"].t) == len(whole.time)
+    assert len(r.probes["seldom"].t) == len(whole.probes["seldom"].t) < 25
+
+
+def test_a_long_run_keeps_what_it_is_asked_for(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
+    pendulum.analysis.update(duration="0.25 s", step="20 us")
+    assert len(polhode.run(pendulum).time) == 6251
+    assert len(polhode.run(pendulum, overrides={"output.every": "20 us"}).time) == 12501
+    assert len(polhode.run(pendulum, overrides={"analysis.duration": "0.2 s"}).time) == 10001
+    r = polhode.run(pendulum, output=tmp_path / "run")
+    assert len(r.time) == len(polhode.open(tmp_path / "run").time) == 12501
+    pendulum.output.every = "1 ms"
+    assert len(polhode.run(pendulum).time) == 251
 
 
 def test_progress_is_shown_by_tqdm(pendulum: polhode.Model, monkeypatch: pytest.MonkeyPatch) -> None:
