@@ -25,7 +25,7 @@ def run_page(page, folder):
     python/tests/test_docs.py: they need the Python package."""
     count, name, faults = 0, None, []
     for block in BLOCK.finditer(page.read_text()):
-        lines = (block["text"] or "").splitlines()
+        lines = (block["text"] or "").replace("\\\n", " ").splitlines()  # a command may go on in the next line
         if block["file"]:
             name = block["file"]
         elif block["language"] == "yaml":

@@ -43,7 +43,7 @@ def sweeps_of(page: pathlib.Path, folder: pathlib.Path) -> "dict[str, list[dict[
     """Tables of the sweeps of a tutorial, by file: its models are saved and its commands run as they stand."""
     import pandas
 
-    text = page.read_text()
+    text = page.read_text().replace("\\\n", " ")
     for name, model in re.findall(r"Save this as `(\w+\.yaml)`.*?```yaml\n(.*?)```", text, re.S):
         (folder / name).write_text(model)
     tables = {}
