@@ -14,6 +14,7 @@ from . import _native
 from ._derivatives import Differentiable
 from ._stores import FileStore, Store
 from ._tree import counted
+from .rotations import matrix_from_quaternion
 
 if TYPE_CHECKING:
     from ._show import Page
@@ -142,7 +143,8 @@ class Result(Differentiable):
     """Results of a run, frame by frame. SI units; vectors are in world axes.
 
     time (T,) [s]; bodies[name].position (T, 3) [m], .orientation (T, 4) quaternion (w, x, y, z) body
-    to world, .velocity [m/s], .angular_velocity [rad/s]; joints[name].force (T, 3) [N] of the first
+    to world, .velocity [m/s], .angular_velocity [rad/s], .angular_velocity_body along the body's own axes
+    (computed, not stored); joints[name].force (T, 3) [N] of the first
     body on the second, .moment [N m], .coordinates (T, free) [rad or m], .rates; loads, contacts,
     solids, beams and cables by name; energy, momentum and solver. Arrays are read-only, and those of a run
     are views of the engine's memory: `.copy()` gives one to change. docs/reference/results_file.md lists them all.
@@ -267,6 +269,9 @@ class Result(Differentiable):
     def _packed(self, path: str) -> Any:
         """A quantity of one object from the array of all bodies or joints."""
         _, group, name, quantity = path.split("/")
+        if (group, quantity) == ("bodies", "angular_velocity_body"):  # computed, not stored
+            spin, turn = (self._packed(f"/bodies/{name}/{q}") for q in ("angular_velocity", "orientation"))
+            return None if spin is None or turn is None else in_body_axes(spin, turn)
         index = self._packed_names(group).get(name)
         if index is None or quantity not in self._children().get(f"/packed/{group}", ()):
             return None
@@ -318,7 +323,7 @@ class Result(Differentiable):
         if name in self._children().get(above, ()):
             return self._store.unit(path)
         parts = path.split("/")
-        return self._store.unit(f"/packed/{parts[1]}/{parts[-1]}")
+        return self._store.unit(f"/packed/{parts[1]}/{parts[-1].removesuffix('_body')}")
 
     def channels(self) -> "list[str]":
         """Dotted names of all channels over time."""
@@ -436,6 +441,11 @@ class Result(Differentiable):
         span = f"{self.frames} frames from {t[0]:g} to {t[-1]:g} s" if len(t) else "no frames"
         counts = [counted(len(self._names("/" + g)), g) for g in ("bodies", "joints", "loads") if self._names("/" + g)]
         return f"<polhode.Result: {', '.join([span, *counts, *([self.end] if self.end else [])])}>"
+
+
+def in_body_axes(vectors: Any, orientations: Any) -> Any:
+    """Vectors (3,) or (T, 3) of the world along the axes of bodies with these quaternions (4,) or (T, 4)."""
+    return np.einsum("...ij,...i->...j", matrix_from_quaternion(orientations), vectors)
 
 
 def _components(shape: "tuple[int, ...]") -> "list[str]":

@@ -13,7 +13,7 @@ import numpy as np
 from . import _native
 from ._errors import NotConverged
 from ._model import Model, Overrides, load
-from ._result import Report, Result, Table
+from ._result import Report, Result, Table, in_body_axes
 from ._stores import MemoryStore, read_only
 
 
@@ -108,6 +108,12 @@ class BodyNow(_Now):
         object.__setattr__(self, "_simulation", simulation)
         object.__setattr__(self, "_index", index)
 
+    def __getitem__(self, name: str) -> Any:
+        if name != "angular_velocity_body":
+            return super().__getitem__(name)
+        now = self._read()
+        return read_only(in_body_axes(now["angular_velocity"], now["orientation"]))
+
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self._settable:
             raise AttributeError(f"{name} cannot be set; {', '.join(self._settable)} can")
@@ -175,7 +181,8 @@ class Simulation:
             print(step.time, sim.bodies["arm"].position)
 
     bodies[name] has position (3,) [m], orientation (4,) quaternion (w, x, y, z) body to world,
-    velocity [m/s], angular_velocity [rad/s], acceleration [m/s²]: of the centre of mass, world axes.
+    velocity [m/s], angular_velocity [rad/s], acceleration [m/s²]: of the centre of mass, world axes;
+    and angular_velocity_body along the body's own axes.
     joints[name] has coordinates, rates, force, moment and residual. What bodies[name], joints[name],
     loads[name] and probes[name] return follows the simulation: every access reads its present state, and
     arrays are read-only copies. Raises ModelError for a model with faults.

@@ -48,6 +48,28 @@ def test_a_pendulum_moves_as_its_equation_says(step: float) -> None:
     assert r.ledger.energy_drift < 1e-13 and r.end == "finished"
 
 
+def test_angular_velocity_is_also_along_the_axes_of_the_body() -> None:
+    # Without moments Euler's equations hold in the body's axes: J dW/dt = -W x J W.
+    inertia, start = np.array([1.0, 2.0, 3.0]), [0.01, 5.0, 0.01]
+    m = polhode.Model()
+    m.add_body("racket", mass=1, inertia=list(inertia), orientation={"axis": [1, 1, 0], "angle": 0.7},
+               angular_velocity_body=start)
+    m.analysis.duration, m.analysis.step, m.analysis.order = 4.0, 0.01, 8
+    r = polhode.run(m)
+    motion = solve_ivp(lambda t, w: -np.cross(w, inertia * w) / inertia, (0, 4), start, method="DOP853",
+                       rtol=1e-13, atol=1e-13, t_eval=r.time)
+    own = r.bodies["racket"].angular_velocity_body
+    assert np.abs(own - motion.y.T).max() < 1e-8
+    assert own[:, 1].min() < -4.9 and r.bodies["racket"].angular_velocity[:, 1].min() > -4.9
+    assert np.array_equal(r["bodies.racket.angular_velocity_body.y"], own[:, 1])
+    assert r.unit("bodies.racket.angular_velocity_body") == "rad/s"
+    assert "bodies.racket.angular_velocity_body" not in r.channels()
+    now = polhode.Simulation(m).bodies["racket"]
+    assert now.angular_velocity_body == pytest.approx(start, abs=1e-15)
+    with pytest.raises(AttributeError, match="cannot be set"):
+        now.angular_velocity_body = [0, 0, 1]
+
+
 def test_arrays_are_the_memory_of_the_engine(pendulum: polhode.Model) -> None:
     r = polhode.run(pendulum)
     body = r.bodies["arm"]

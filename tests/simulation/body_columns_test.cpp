@@ -84,6 +84,69 @@ TEST(BodyColumns, ContainTheAngularMotion) {
       1e-6);
 }
 
+// In the disc's own axes W = (3, φ̇ sin ψ, φ̇ cos ψ), relative to the arm (3, 0, 0).
+// @tests{relative-motion}
+TEST(BodyColumns, ContainTheAngularMotionInTheBodysAxes) {
+  const double c = std::cos(kPsi), s = std::sin(kPsi);
+  const std::string own = "angular: true, axes: body";
+  expect_numbers(
+      at_end(own), 10,
+      {3.0, kRate * s, kRate * c, 0.0, 4.0 * s + 3.0 * kRate * c, 4.0 * c - 3.0 * kRate * s}, 1e-6);
+  expect_numbers(at_end(own + ", seen_from: arm"), 10, {3.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 1e-6);
+}
+
+// m v along the arm's y, J ω about the centre of mass. @tests{reported-momentum}
+TEST(BodyColumns, OfAMomentumAreThoseOfTheBody) {
+  const auto at_end_of = [](const std::string& probe) {
+    std::string model = text("angular: true");
+    model.replace(model.find("disc: {body"), std::string::npos, "it: {" + probe + "}}}\n");
+    Simulation s(io::read_model_text(model, "columns.yaml"));
+    EXPECT_EQ(s.run().end, RunEnd::finished);
+    return probe_row(probe_target(s, s.model().output.probes[0]), s);
+  };
+  const double s = std::sin(kPhi), c = std::cos(kPhi), J = 0.1;
+  const double kinetic = 0.5 * (kRate * kRate + 0.2 * 9.0 + J * kRate * kRate);
+  expect_numbers(at_end_of("momentum: disc"), 1,
+                 {-kRate * s, kRate * c, 0.0, 0.6 * c, 0.6 * s, J * kRate, kinetic}, 1e-6);
+  const double s_b = std::sin(kPsi), c_b = std::cos(kPsi);
+  expect_numbers(at_end_of("momentum: disc, axes: body"), 1,
+                 {0.0, kRate * c_b, -kRate * s_b, 0.6, J * kRate * s_b, J * kRate * c_b, kinetic},
+                 1e-6);
+}
+
+// That of all bodies of a part and their rotors is what the balances have, about another point.
+// @tests{reported-momentum}
+TEST(BodyColumns, OfAMomentumAreThoseOfAPart) {
+  Simulation s(io::read_model_text(R"(
+format: 1
+bodies: {other: {mass: 1, inertia: [1, 1, 1], position: [5, 0, 0]}}
+parts:
+  craft:
+    position: [1, 2, 0]
+    model:
+      format: 1
+      bodies:
+        hub: {mass: 3, inertia: [1, 2, 2.5], velocity: [0.1, 0.3, 0], angular_velocity: [0.3, 0.2, 0.6]}
+        arm: {mass: 2, inertia: [0.1, 0.4, 0.4], position: [1, 0.2, 0], velocity: [0.2, -0.4, 0.7]}
+      loads:
+        wheel: {type: rotor, body: hub, axis: [1, 1, 0], inertia: 0.2, moment: 0.3*t, start_speed: 50}
+        gyro: {type: rotor, body: arm, axis: z, inertia: 0.1, speed: 20 + t}
+        link: {type: spring_damper, bodies: [hub, arm], at: [[0, 0, 0], [1, 0.3, 0]], stiffness: 20}
+analysis: {duration: 0.5 s, step: 5 ms}
+output: {hdf5: false, probes: {craft: {momentum: craft_*}}}
+)",
+                                   "part.yaml"));
+  EXPECT_EQ(s.run().end, RunEnd::finished);
+  const std::vector<double> row = probe_row(probe_target(s, s.model().output.probes[0]), s);
+  ASSERT_EQ(row.size(), 8U);
+  const Vec3 p(row[1], row[2], row[3]), l(row[4], row[5], row[6]);
+  const Vec3 centre = (3.0 * s.body(1).r + 2.0 * s.body(2).r) / 5.0;
+  const Balance all = s.balance();
+  EXPECT_LT((p - all.linear_momentum).norm(), 1e-12);
+  EXPECT_LT((l + centre.cross(p) - all.angular_momentum).norm(), 1e-12);
+  EXPECT_NEAR(row[7], all.kinetic, 1e-12 * all.kinetic);
+}
+
 // Axis of the disc relative to the arm: the spindle. Relative to the ground: from the disc's
 // rotation and displacement.
 // @tests{helical-rate} @tests{helical-finite}
@@ -112,6 +175,26 @@ TEST(BodyColumns, ReportErrors) {
   EXPECT_NE(fault("rotation: vectr").find("output.probes.disc.rotation: is 'vectr'. Write"),
             std::string::npos);
   EXPECT_NE(fault("rotation: zzx").find("'zzx' is no Euler sequence"), std::string::npos);
+  for (const auto& [probe, message] :
+       {std::pair("momentum: arms",
+                  "'arms' names no body. Did you mean 'arm'? Name a body, or the"),
+        std::pair("momentum: disk*", "'disk*' names no body"),
+        std::pair("momentum: \"*\", axes: body", "'*' has several bodies")}) {
+    std::string model = text("angular: true");
+    model.replace(model.find("disc: {body"), std::string::npos,
+                  "it: {" + std::string(probe) + "}}}\n");
+    try {
+      Simulation s(io::read_model_text(model, "columns.yaml"));
+      (void)probe_target(s, s.model().output.probes[0]);
+      ADD_FAILURE() << probe;
+    } catch (const std::exception& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_NE(fault("axes: body").find("are those of the angular motion, which is not recorded"),
+            std::string::npos);
+  EXPECT_NE(fault("angular: true, axes: joint").find("'joint' cannot be combined with 'body'"),
+            std::string::npos);
   EXPECT_NE(fault("seen_from: arn").find("unknown body 'arn'. Did you mean 'arm'?"),
             std::string::npos);
 }

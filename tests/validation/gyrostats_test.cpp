@@ -262,6 +262,47 @@ TEST(Gyrostats, HaveTheirNutationAsAMode) {
   EXPECT_NEAR(highest, 6.0 / 2.0, 1e-9);
 }
 
+// A wheel that two controllers drive holds a direction: the body is at rest there, and the wheel
+// has the momentum of the start.
+TEST(Gyrostats, HoldAnAttitudeByAController) {
+  for (const double h : {0.05, 0.005}) {
+    Simulation s = made(format(R"(
+format: 1
+bodies: {{craft: {{mass: 10, inertia: [2, 2, 3], angular_velocity: [0, 0, 0.1]}}}}
+controllers:
+  angle: {{body: craft, rotation: vector, channel: thetaz, setpoint: 0.2 rad, proportional: 0.5, sample: 50 ms}}
+  rate: {{body: craft, angular: true, channel: wz, setpoint: {{controller: angle}}, proportional: -6, sample: 50 ms}}
+loads: {{wheel: {{type: rotor, body: craft, axis: z, inertia: 0.02, moment: {{controller: rate}}}}}}
+analysis: {{duration: 40 s, step: {}}}
+output: {{hdf5: false}}
+)",
+                               h));
+    expect_balances(finished(s), format("step {}", h));
+    EXPECT_NEAR(2.0 * std::asin(s.body(0).q.z()), 0.2, 1e-6) << h;
+    EXPECT_NEAR(s.load(0)[4], 3.0 * 0.1 + 0.02 * 0.1, 1e-6) << h;
+  }
+}
+
+// A mirrored part has the mirror image of the motion; momenta are axial vectors.
+TEST(Gyrostats, AreMirroredWithTheirPart) {
+  const std::string hub =
+      "model: {format: 1, bodies: {hub: {mass: 3, inertia: [1, 2, 2.5], angular_velocity: [0.3, "
+      "0.2, 0.6], orientation: {axis: [1, 2, 0.5], angle: 40 deg}}}, loads: {w: {type: rotor, "
+      "body: hub, axis: [1, 2, 3], inertia: 0.2, moment: 0.3*t, start_speed: 50}, v: {type: rotor, "
+      "body: hub, axis_body: [1, -2, 3], inertia: 0.1, speed: 20 + 3*t}}}";
+  Simulation s =
+      made("format: 1\nparts:\n  a: {" + hub + "}\n  b: {mirror: y, position: [0, 9, 0], " + hub +
+           "}\nanalysis: {duration: 1, step: 5 ms}\noutput: {hdf5: false}\n");
+  expect_balances(finished(s), "mirrored");
+  const Vec3 axial(-1.0, 1.0, -1.0);
+  EXPECT_LT((s.body(1).omega() - axial.cwiseProduct(s.body(0).omega())).norm(), 1e-12);
+  for (const int k : {0, 1}) {
+    const std::vector<double> one = s.load(k), other = s.load(2 + k);
+    EXPECT_NEAR(one[3], other[3], 1e-10);
+    EXPECT_LT((Vec3(other.data() + 5) - axial.cwiseProduct(Vec3(one.data() + 5))).norm(), 1e-11);
+  }
+}
+
 TEST(Gyrostats, SayWhatIsMissing) {
   const auto text = [](const std::string& rotor) {
     return craft("inertia: [1, 2, 3]", "w: {type: rotor, body: craft, " + rotor + "}", 1.0, 0.1);

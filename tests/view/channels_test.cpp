@@ -66,6 +66,24 @@ TEST_F(ChannelsTest, AFallingStoneFollowsTheClosedForm) {
     EXPECT_NEAR(z[0].values[k], -0.5 * 10.0 * 1e-4 * static_cast<double>(k * k), 1e-14);
 }
 
+// The arm turns about y, which is the same in both axes; a channel that is computed is found by its
+// name, and is not among those of a whole table.
+TEST_F(ChannelsTest, AngularVelocityIsAlsoAlongTheBodysAxes) {
+  const io::ResultsReader r = results();
+  const auto own = channel_columns(r, "bodies.arm.angular_velocity_body");
+  const auto world = channel_columns(r, "bodies.arm.angular_velocity");
+  ASSERT_EQ(own.size(), 3U);
+  EXPECT_EQ(own[1].name, "bodies.arm.angular_velocity_body.y");
+  EXPECT_EQ(own[1].unit, "rad/s");
+  EXPECT_GT(std::abs(world[1].values.back()), 0.1);
+  for (std::size_t f = 0; f < own[1].values.size(); ++f) {
+    EXPECT_NEAR(own[0].values[f], 0.0, 1e-14);
+    EXPECT_NEAR(own[1].values[f], world[1].values[f], 1e-14);
+  }
+  EXPECT_EQ(channel_columns(r, "bodies.arm.angular_velocity_body.y").size(), 1U);
+  for (const std::string& name : channel_names(r)) EXPECT_EQ(name.find("_body"), std::string::npos);
+}
+
 TEST_F(ChannelsTest, ANameSelectsAComponentAChannelOrAGroup) {
   EXPECT_THAT(
       names("bodies.arm.velocity"),

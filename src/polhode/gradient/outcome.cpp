@@ -79,6 +79,7 @@ OutcomeReader::OutcomeReader(const Model& model, const SystemMap& map, const std
     }
     if (probe.kind != "body" || probe.seen_from != kGround) refuse_channel(channel);
     const bool v = end.size() == 2 && end[0] == 'v', w = end.size() == 2 && end[0] == 'w';
+    if (w && probe.axes == "body") refuse_channel(channel);
     what_ = v ? What::velocity : w ? What::turn : What::position;
     component_ = component_of(v || w ? end.substr(1) : end);
     if (component_ < 0) refuse_channel(channel);

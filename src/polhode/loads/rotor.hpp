@@ -35,6 +35,8 @@ class Rotor : public InteractionItem {
   /// the axis and as a vector [N m s], moment on the rotor about the axis, for a given speed the
   /// mean of the last step [N m], its power [W] and work [J], kinetic energy about the axis [J].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
+  /// Places in the report of the momentum as a vector, and of the energy.
+  static constexpr std::size_t kReportedMomentum = 5, kReportedEnergy = 11;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
 

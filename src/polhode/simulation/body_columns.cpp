@@ -112,8 +112,10 @@ std::vector<double> body_numbers(const Simulation& simulation, const ProbeSpec& 
     for (const double angle : euler_angles(m.R, spec.rotation)) row.push_back(angle);
   }
   if (spec.angular) {
-    add_vector(row, m.omega);
-    add_vector(row, m.alpha);
+    // In the body's axes α has the components of the rate of ω there. @eq{relative-motion}
+    const Mat3 to_axes = spec.axes == "body" ? m.R.transpose() : Mat3::Identity().eval();
+    add_vector(row, to_axes * m.omega);
+    add_vector(row, to_axes * m.alpha);
   }
   if (spec.helical.empty()) return row;
   HelicalAxis axis;

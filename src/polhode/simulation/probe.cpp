@@ -7,6 +7,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/simulation/body_columns.hpp>
+#include <polhode/simulation/momentum_columns.hpp>
 #include <polhode/simulation/probe_columns.hpp>
 
 namespace polhode {
@@ -75,11 +76,20 @@ ProbeTarget find_target(const Simulation& simulation, const ProbeSpec& spec,
                        "Record an interface or a point of the solid, or a load on bodies");
     return {.spec = spec, .index = load};
   }
+  if (spec.kind == "momentum") {
+    ProbeTarget target{.spec = spec};
+    target.bodies = bodies_with_momentum(model, spec.target, where + ".momentum");
+    if (spec.axes == "body" && target.bodies.size() > 1)
+      throw InputError(where + ".axes", format("'{}' has several bodies", spec.target),
+                       "Name one of them, or leave axes out");
+    return target;
+  }
   const bool body = spec.kind == "body";
   if (!body && spec.kind != "joint")
     throw InputError(
         where, format("records a '{}', which is not known", spec.kind),
-        "Name a body, a joint, a load, a solid, a beam, a cable, a contact or a controller");
+        "Name a body, a joint, a load, a solid, a beam, a cable, a contact, a controller or a "
+        "momentum");
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
     throw InputError(where, "records the ground, which does not move", "Name a body");
@@ -139,6 +149,10 @@ std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simula
     const InterfaceReport reaction = simulation.interface_reaction(probe.index, probe.interface);
     extend(row, reaction.force);
     extend(row, reaction.moment);
+  } else if (probe.spec.kind == "momentum") {
+    const std::vector<double> numbers =
+        momentum_numbers(simulation, probe.bodies, probe.spec.axes == "body");
+    row.insert(row.end(), numbers.begin(), numbers.end());
   } else if (probe.spec.kind == "contact") {
     add_contact(row, simulation, probe);
   } else if (probe.spec.kind == "controller") {

@@ -14,9 +14,10 @@ namespace polhode {
 /// Resolved probe: its target and its columns.
 struct ProbeTarget {
   ProbeSpec spec{};
-  int index = 0;       ///< Of the body, joint, load, solid, beam or cable, or of the pair.
-  SolidPoint point{};  ///< Of a solid.
-  int interface = -1;  ///< Of a solid; -1: none.
+  int index = 0;              ///< Of the body, joint, load, solid, beam or cable, or of the pair.
+  SolidPoint point{};         ///< Of a solid.
+  int interface = -1;         ///< Of a solid; -1: none.
+  std::vector<int> bodies{};  ///< Of a probe of momentum.
   std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
 };
 

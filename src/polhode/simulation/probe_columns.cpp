@@ -10,6 +10,7 @@
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/velocity_jumps.hpp>
 #include <polhode/simulation/body_columns.hpp>
+#include <polhode/simulation/momentum_columns.hpp>
 #include <polhode/simulation/probe_columns.hpp>
 
 namespace polhode {
@@ -142,6 +143,7 @@ std::vector<std::string> probe_columns(const Model& model, const ProbeSpec& spec
     return list[static_cast<std::size_t>(index)];
   };
   if (spec.kind == "body") return body_columns(spec);
+  if (spec.kind == "momentum") return momentum_columns();
   if (spec.kind == "joint")
     return joint_header(model, of(model.joints, model.joint_index(spec.target)));
   if (spec.kind == "load") return load_header(of(model.loads, model.load_index(spec.target)));

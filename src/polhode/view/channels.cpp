@@ -24,6 +24,9 @@ struct Slice {
   std::string path, head, unit;
   std::size_t first = 0;
   std::vector<std::string> labels;  ///< One that is empty: a number without components.
+  /// Data set of the quaternions by which it is turned back, to the axes of a body; "": none.
+  std::string turned_by{};
+  std::size_t first_turn = 0;
 };
 
 /// Most coordinates of a joint.
@@ -106,6 +109,26 @@ std::vector<Slice> slices_of(const io::ResultsReader& results) {
   return list;
 }
 
+/// Channels that are computed from others, found by their names alone: angular velocities along the
+/// bodies' axes.
+std::vector<Slice> derived_from(const std::vector<Slice>& slices) {
+  std::vector<Slice> list;
+  for (const Slice& turn : slices) {
+    const std::string_view end = ".orientation";
+    if (!turn.head.starts_with("bodies.") || !turn.head.ends_with(end)) continue;
+    const std::string name =
+        turn.head.substr(0, turn.head.size() - end.size()) + ".angular_velocity";
+    const auto spin =
+        std::find_if(slices.begin(), slices.end(), [&](const Slice& s) { return s.head == name; });
+    if (spin == slices.end()) continue;
+    list.push_back(*spin);
+    list.back().head += "_body";
+    list.back().turned_by = turn.path;
+    list.back().first_turn = turn.first;
+  }
+  return list;
+}
+
 std::string full_name(const Slice& slice, std::size_t k) {
   return slice.labels[k].empty() ? slice.head : slice.head + "." + slice.labels[k];
 }
@@ -114,10 +137,14 @@ std::string full_name(const Slice& slice, std::size_t k) {
 class Columns {
  public:
   explicit Columns(const io::ResultsReader& results)
-      : results_(results), slices_(slices_of(results)) {}
+      : results_(results), slices_(slices_of(results)), derived_(derived_from(slices_)) {}
 
   std::vector<ChannelColumn> find(const std::string& name) {
     std::vector<ChannelColumn> found;
+    for (const Slice& slice : derived_)
+      for (std::size_t k = 0; k < slice.labels.size(); ++k)
+        if (slice.head == name || full_name(slice, k) == name)
+          found.push_back({full_name(slice, k), slice.unit, turned_column(slice, k)});
     for (const Slice& slice : slices_) {
       const bool whole = slice.head == name || slice.head.rfind(name + ".", 0) == 0;
       for (std::size_t k = 0; k < slice.labels.size(); ++k)
@@ -126,7 +153,8 @@ class Columns {
     }
     if (!found.empty()) return found;
     std::vector<std::string> names;
-    for (const Slice& slice : slices_) names.push_back(slice.head);
+    for (const auto* list : {&slices_, &derived_})
+      for (const Slice& slice : *list) names.push_back(slice.head);
     throw InputError("channel", format("there is no '{}'", name),
                      did_you_mean(name, names) +
                          "Channels are named like energy.kinetic or bodies.NAME.position.x");
@@ -146,8 +174,24 @@ class Columns {
     return values;
   }
 
+  /// Component of a vector turned to the axes of a body.
+  std::vector<double> turned_column(const Slice& slice, std::size_t k) {
+    Slice turn;
+    turn.path = slice.turned_by;
+    turn.first = slice.first_turn;
+    std::array<std::vector<double>, 3> v;
+    std::array<std::vector<double>, 4> q;
+    for (std::size_t i = 0; i < 3; ++i) v[i] = column(slice, i);
+    for (std::size_t i = 0; i < 4; ++i) q[i] = column(turn, i);
+    std::vector<double> values;
+    for (std::size_t f = 0; f < v[0].size() && f < q[0].size(); ++f)
+      values.push_back((Quat(q[0][f], q[1][f], q[2][f], q[3][f]).conjugate() *
+                        Vec3(v[0][f], v[1][f], v[2][f]))[static_cast<Eigen::Index>(k)]);
+    return values;
+  }
+
   const io::ResultsReader& results_;
-  std::vector<Slice> slices_;
+  std::vector<Slice> slices_, derived_;
   std::map<std::string, std::vector<double>> read_;
 };
 

@@ -8,6 +8,6 @@ TEST(ConnectorsPage, EveryExampleRuns) {
   EXPECT_EQ(run_page_examples("docs/reference/connectors.md"), 12);
 }
 
-TEST(JointsPage, EveryExampleRuns) { EXPECT_EQ(run_page_examples("docs/reference/joints.md"), 1); }
+TEST(JointsPage, EveryExampleRuns) { EXPECT_EQ(run_page_examples("docs/reference/joints.md"), 2); }
 
 }  // namespace polhode::test::connectors_page_tests

@@ -140,8 +140,8 @@ void set_spin(const SpinText& text, AnalysisSpec& analysis) {
 
 namespace {
 
-const std::vector<std::string> kRecorded = {"body", "joint", "load",    "solid",
-                                            "beam", "cable", "contact", "controller"};
+const std::vector<std::string> kRecorded = {"body",  "joint",   "load",       "solid",   "beam",
+                                            "cable", "contact", "controller", "momentum"};
 
 }  // namespace
 

@@ -8,8 +8,8 @@ namespace polhode::io {
 
 namespace {
 
-const std::vector<std::string> kReporting = {"body", "joint", "load",   "solid",
-                                             "beam", "cable", "contact"};
+const std::vector<std::string> kReporting = {"body", "joint", "load",    "solid",
+                                             "beam", "cable", "contact", "momentum"};
 
 }  // namespace
 

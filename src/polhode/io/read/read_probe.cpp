@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cctype>
 
+#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/simulation/momentum_columns.hpp>
 
 namespace polhode::io {
 
@@ -116,6 +118,21 @@ void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe
   probe.pair = *pair;
 }
 
+/// Reads the body of a momentum, or the beginning of the names of several and a star.
+void read_momentum_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  const auto name = section.text("momentum");
+  if (!name) return;
+  probe.target = *name;
+  std::vector<std::string> names;
+  for (const BodySpec& body : context.model.bodies)
+    if (!body.fixed) names.push_back(body.name);
+  try {
+    (void)bodies_with_momentum(context.model, *name, section.path("momentum"));
+  } catch (const InputError& e) {
+    section.fault("momentum", e.what_is_wrong(), did_you_mean(*name, names) + e.hint() + ".");
+  }
+}
+
 /// Further columns of a body.
 void read_body_columns(Section& section, ProbeSpec& probe) {
   const auto rotation = section.text("rotation");
@@ -127,6 +144,9 @@ void read_body_columns(Section& section, ProbeSpec& probe) {
   else if (rotation && (!euler || check_euler_sequence(section, *rotation, "rotation")))
     probe.rotation = *rotation;
   probe.angular = section.boolean("angular").value_or(false);
+  if (probe.axes == "body" && !probe.angular)
+    section.fault("axes", "are those of the angular motion, which is not recorded",
+                  "Add angular: true.");
   probe.helical = section.choice("helical").value_or("");
   probe.seen_from = section.body("seen_from").value_or(kGround);
 }
@@ -163,10 +183,14 @@ bool read_recorded(ReadContext& context, Section& section, const std::vector<std
     if (section.has(key) && probe.kind != "body")
       section.fault(key, format("cannot be combined with '{}'", probe.kind),
                     "It belongs to a body.");
-  if (section.has("axes") && probe.kind != "joint")
-    section.fault("axes", format("cannot be combined with '{}'", probe.kind),
-                  "Axes belong to a joint's reaction.");
   if (const auto axes = section.choice("axes")) probe.axes = *axes;
+  if (probe.axes != "world" && probe.axes != (probe.kind == "joint" ? "joint" : "body"))
+    section.fault("axes", format("'{}' cannot be combined with '{}'", probe.axes, probe.kind),
+                  "A joint's reaction has the axes world or joint, a body's motion world or body.");
+  else if (section.has("axes") && probe.kind != "joint" && probe.kind != "body" &&
+           probe.kind != "momentum")
+    section.fault("axes", format("cannot be combined with '{}'", probe.kind),
+                  "Axes belong to a joint's reaction, a body's angular motion and a momentum.");
   if (probe.kind == "body") {
     const auto body = section.body("body");
     const auto point = section.vector("point");
@@ -187,6 +211,8 @@ bool read_recorded(ReadContext& context, Section& section, const std::vector<std
     read_contact_probe(context, section, probe);
   } else if (probe.kind == "controller") {
     probe.target = read_target(context, section, "controller", context.controllers);
+  } else if (probe.kind == "momentum") {
+    read_momentum_probe(context, section, probe);
   } else if (probe.kind == "joint") {
     probe.target = read_target(context, section, "joint", context.joint_names());
   } else {

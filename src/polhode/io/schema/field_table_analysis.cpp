@@ -272,7 +272,7 @@ const FieldTable& output_fields() {
 const FieldTable& probe_fields() {
   static const FieldTable table{
       "probe",
-      "One of body, joint, load, solid, beam, cable, contact, controller.",
+      "One of body, joint, load, solid, beam, cable, contact, controller, momentum.",
       {
           {.name = "body",
            .kind = kBody,
@@ -306,9 +306,11 @@ const FieldTable& probe_fields() {
            .meaning = "Record reaction, free coordinates and their rates."},
           {.name = "axes",
            .kind = kChoice,
-           .meaning = "Axes in which the joint's reaction is given.",
+           .meaning =
+               "Axes of a joint's reaction, world or joint; of a body's angular motion and of "
+               "a momentum, world or body.",
            .standard = "world",
-           .choices = {"world", "joint"}},
+           .choices = {"world", "joint", "body"}},
           {.name = "load",
            .kind = kLoad,
            .meaning = "Record force or moment of this load; for a spring also length or angle, "
@@ -343,6 +345,12 @@ const FieldTable& probe_fields() {
           {.name = "controller",
            .kind = kText,
            .meaning = "Record setpoint, channel and output of this controller, in SI."},
+          {.name = "momentum",
+           .kind = kText,
+           .meaning =
+               "Record the momentum of this body, or of all whose names begin so if it ends with "
+               "a star, with their rotors: linear, angular about their centre of mass, and "
+               "kinetic energy."},
           {.name = "contact",
            .kind = kBodyPair,
            .meaning = "Record gap, forces, point, status, impulse and energy lost between these "

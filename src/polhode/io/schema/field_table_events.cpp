@@ -63,7 +63,7 @@ const FieldTable& condition_fields() {
   static const FieldTable table = [] {
     FieldTable t{"condition",
                  "A channel above or below a value. Give one of body, joint, load, solid, beam, "
-                 "cable and contact, and one of above and below.",
+                 "cable, contact and momentum, and one of above and below.",
                  channel_fields()};
     t.fields.insert(
         t.fields.end(),
