@@ -84,6 +84,29 @@ void add_law_jumps(const LoadSpec& load, std::vector<std::string>& list) {
   }
 }
 
+/// Length of a muscle's fibres at the start over their optimal length; nothing for other cables.
+std::optional<double> fibre_length(const Simulation& simulation, std::size_t cable) {
+  const CableLineSpec& spec = simulation.model().cables[cable];
+  const CableReport report = simulation.cable(static_cast<int>(cable));
+  if (!spec.muscle || !report.whole) return std::nullopt;
+  return report.whole->fibre_length / spec.muscle->optimal_length;
+}
+
+/// Muscles whose fibres are outside of the lengths at which they can pull actively.
+void add_muscle_warnings(const Simulation& simulation, std::vector<std::string>& list) {
+  // Active forces there are a fortieth and an eighth of the largest: @eq{muscle-length}
+  constexpr double kLeast = 0.4, kMost = 1.6;
+  const std::vector<CableLineSpec>& cables = simulation.model().cables;
+  for (std::size_t i = 0; i < cables.size(); ++i) {
+    const std::optional<double> length = fibre_length(simulation, i);
+    if (!length || (*length >= kLeast && *length <= kMost)) continue;
+    list.push_back(format(
+        "The fibres of muscle '{}' start at {:.3g} of their optimal length, outside of {:g} "
+        "to {:g}, beyond which they hardly pull. Check tendon_length, optimal_length and the path.",
+        cables[i].name, *length, kLeast, kMost));
+  }
+}
+
 /// Conspicuous findings in a model that can be run.
 std::vector<std::string> warnings(const Simulation& simulation, const RankReport& rank) {
   std::vector<std::string> list;
@@ -116,6 +139,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                "and rebound are too small. Set rho_inf: 1.",
                simulation.model().analysis.rho_inf));
   for (const LoadSpec& load : simulation.model().loads) add_law_jumps(load, list);
+  add_muscle_warnings(simulation, list);
   add_end_of_reach(simulation, list);
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
@@ -171,24 +195,35 @@ nlohmann::ordered_json beams_json(const Model& model) {
   return list;
 }
 
-nlohmann::ordered_json cables_json(const Model& model) {
+nlohmann::ordered_json cables_json(const Simulation& simulation) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const CableLineSpec& cable : model.cables)
-    list.push_back({{"name", cable.name},
-                    {"pieces", cable.pieces.size()},
-                    {"free_length", cable.length()},
-                    {"mass", cable.mass()}});
+  const std::vector<CableLineSpec>& cables = simulation.model().cables;
+  for (std::size_t i = 0; i < cables.size(); ++i) {
+    list.push_back({{"name", cables[i].name},
+                    {"pieces", cables[i].pieces.size()},
+                    {"free_length", cables[i].length()},
+                    {"mass", cables[i].mass()}});
+    if (const auto length = fibre_length(simulation, i))
+      list.back()["fibre_over_optimal"] = *length;
+  }
   return list;
 }
 
-void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& rows) {
+void add_line_rows(const Simulation& simulation, std::vector<std::vector<std::string>>& rows) {
+  const Model& model = simulation.model();
   for (const BeamSpec& beam : model.beams)
     rows.push_back(
         {format("beam {}", beam.name), counted(beam.mesh.size(), "element", "elements"),
          format("section {}, {:.6g} m, {:.6g} kg", beam.section.name, beam.length(), beam.mass())});
-  for (const CableLineSpec& cable : model.cables)
-    rows.push_back({format("cable {}", cable.name), counted(cable.pieces.size(), "piece", "pieces"),
-                    format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    const CableLineSpec& cable = model.cables[i];
+    const std::optional<double> length = fibre_length(simulation, i);
+    rows.push_back({format("{} {}", length ? "muscle" : "cable", cable.name),
+                    counted(cable.pieces.size(), "piece", "pieces"),
+                    length
+                        ? format("fibres at {:.3g} of their optimal length", *length)
+                        : format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
+  }
 }
 
 /// Contact of a surface of a solid, or of a cable, with a shape or another surface.
@@ -299,7 +334,7 @@ int check(const CheckOptions& options) {
                                    {"loads", simulation.model().loads.size()},
                                    {"solids", solids_json(simulation)},
                                    {"beams", beams_json(simulation.model())},
-                                   {"cables", cables_json(simulation.model())},
+                                   {"cables", cables_json(simulation)},
                                    {"contacts", contacts_json(simulation)},
                                    {"constraint_rows", rank.rows},
                                    {"rank", rank.rank},
@@ -350,7 +385,7 @@ int check(const CheckOptions& options) {
                              solid.mass, solid.plan.volume, interfaces_text(simulation, i),
                              solid.plan.least_jacobian, solid.plan.least_element)});
     }
-    add_line_rows(simulation.model(), rows);
+    add_line_rows(simulation, rows);
     add_surface_rows(simulation, rows);
     if (simulation.has_contacts())
       rows.push_back({"contact", counted(simulation.contact_map().body.size(), "shape", "shapes"),
