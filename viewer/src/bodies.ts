@@ -67,6 +67,7 @@ export class Bodies {
     if (body === this.chosen) return kChosen;
     if (this.tint) return this.tint;
     if (entry.mark) return new Color("#d9822b");
+    if (entry.color) return new Color(entry.color);
     return new Color(entry.fixed ? kFixed : kPalette[this.hues[body] % kPalette.length]);
   }
 

@@ -6,7 +6,7 @@ export type Triple = [number, number, number];
 export type Four = [number, number, number, number];
 export interface MeshEntry { points: Packed; triangles: Packed; type: string }
 export interface PartEntry { mesh?: number; plane?: Triple; p: Triple; q?: Four }
-export interface BodyEntry { name: string; line?: number; fixed?: boolean; mass?: number; node?: boolean; parts?: PartEntry[]; mark?: string }
+export interface BodyEntry { name: string; line?: number; fixed?: boolean; color?: string; mass?: number; node?: boolean; parts?: PartEntry[]; mark?: string }
 export interface JointEntry {
   name: string; type?: string; first?: number; count?: number; line?: number; mark?: string;
   a?: number; b?: number; Za?: Triple; Zb?: Triple; q?: Four;

@@ -184,7 +184,8 @@ export class Solids {
     for (let i = 0; i < n; i++) {
       if (data && this.choice >= 0) {
         const now = this.value(data, frame * n + i, size), next = part > 0 ? this.value(data, (frame + 1) * n + i, size) : now;
-        mapped((now + part * (next - now) - low) / (high - low), colour);
+        const value = now + part * (next - now);
+        if (Number.isFinite(value)) mapped((value - low) / (high - low), colour); else colour.set(this.plain);
       }
       colour.toArray(rows, 3 * i);
     }

@@ -60,6 +60,7 @@ struct BodySpec {
   std::vector<ShapeSpec> shapes;         ///< In the user's body coordinates (subtract com for Z).
   std::string node_of;                   ///< Name of the beam or cable it is a node of, or empty.
   ContactSideSpec contact;               ///< Of all its shapes.
+  std::string color;                     ///< In pictures, "#rrggbb"; empty: chosen by the page.
 };
 
 /// Description of a joint's dry friction; absent values are chosen from the bodies' weights.

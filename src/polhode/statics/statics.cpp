@@ -299,6 +299,13 @@ struct LoadStepper::Impl {
         interaction_name(*system, (grows ? there : gap).open.interaction));
   }
 
+  static std::string free_motions_text(const StaticStep& step) {
+    std::string s = " Free motion: ";
+    for (std::size_t i = 0; i < step.free_motions.size(); ++i)
+      s += (i > 0 ? "; " : "") + step.free_motions[i];
+    return s + ". Constrain it by a joint or a spring.";
+  }
+
   /// Adds an explanation. @param soft  Motion with the smallest stiffness at the last equilibrium.
   void explain(const StaticStep& step, const std::string& soft, const State& state, double tried) {
     std::string& s = report.message;
@@ -307,6 +314,7 @@ struct LoadStepper::Impl {
                place_text(at));
     if (const std::string gap = gap_message(state, tried); !gap.empty()) {
       s += gap;
+      if (!step.free_motions.empty()) s += free_motions_text(step);
       return;
     }
     s += " " + step.reason;
@@ -315,10 +323,7 @@ struct LoadStepper::Impl {
       s += format(" (unbalanced {:.2g} N of {:.2g} N)", step.residual, step.force);
     s += ".";
     if (!step.free_motions.empty()) {
-      s += " Free motion: ";
-      for (std::size_t i = 0; i < step.free_motions.size(); ++i)
-        s += (i > 0 ? "; " : "") + step.free_motions[i];
-      s += ". Constrain it by a joint or a spring.";
+      s += free_motions_text(step);
     } else if (relaxed) {
       s += " Cables are slack: shorten their free_length, load them, or follow the motion with "
            "type: "

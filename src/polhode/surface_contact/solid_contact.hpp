@@ -79,6 +79,8 @@ class SolidContact final : public ElementGroup,
   [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
                                                               const double* history) const override;
+  void add_to_nodes(const NodeStep& instant, const double* history,
+                    std::vector<NodeContact>& nodes) const override;
   [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
   void impacts(const NodeStep& step, const double* history,

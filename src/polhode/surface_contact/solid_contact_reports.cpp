@@ -189,4 +189,40 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
   return list;
 }
 
+/// Points of each solid bear a part of the pressure between them, those of the other one the rest:
+/// each force is shared by the nodes on both sides.
+void SolidContact::add_to_nodes(const NodeStep& instant, const double* history,
+                                std::vector<NodeContact>& nodes) const {
+  if (of_cable()) return;
+  const Search& s = search(history);
+  const Field x(surface_, instant.x_n1);
+  std::vector<double> areas(nodes.size(), 0.0);
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const MeshPoint& point = points_[static_cast<std::size_t>(p)];
+    const double pressure = std::max(memory_of(history, p).pressure, 0.0);
+    const Nearest n = nearest(x, found(s, p), p);
+    const bool is_near = n.triangle >= 0;
+    const auto share = [&](const MeshPoint& at, double part, const auto& use) {
+      double sum = 0.0;  // shape functions are negative at some corners
+      for (int a = 0; a < at.count; ++a) sum += std::abs(at.N[a]);
+      for (int a = 0; a < at.count; ++a) {
+        const auto number = static_cast<std::size_t>(at.node[a]);
+        const double area = part * std::abs(at.N[a]) / sum * point.area;
+        nodes[number].force += area * pressure;
+        if (is_near) nodes[number].gap = std::min(nodes[number].gap, n.distance - centre_);
+        use(number, area);
+      }
+    };
+    share(point, 1.0, [&](std::size_t number, double area) { areas[number] += area; });
+    if (!is_near) continue;
+    const NearestFour four = nearest_triangle(x, {&n.triangle, 1}, p).four;
+    const auto& corners = surface_.triangles[static_cast<std::size_t>(n.triangle)];
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double part = std::abs(four.c[static_cast<Eigen::Index>(k) + 1]); part > 0.0)
+        share(surface_.vertices[static_cast<std::size_t>(corners[k])], part,
+              [](std::size_t, double) {});
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].area = std::max(nodes[i].area, areas[i]);
+}
+
 }  // namespace polhode::surface_contact

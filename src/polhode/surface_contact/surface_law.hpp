@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -43,6 +44,13 @@ struct SurfacePointReport {
   double pressure = 0.0;                               ///< [Pa]
 };
 
+/// Contact at a node of a solid's surface.
+struct NodeContact {
+  double force = 0.0;  ///< Of all contacts, as pressure times area [N].
+  double area = 0.0;   ///< Tributary reference area [m²]; zero: there are no contact points.
+  double gap = std::numeric_limits<double>::infinity();  ///< Least of the points about it [m].
+};
+
 /// Overlap of a surface with another object.
 struct SurfaceOverlap {
   double depth = 0.0;       ///< [m]; 0: in contact.
@@ -63,6 +71,10 @@ class SurfaceContactInterface {
   /// Points that were active in the last step, at its end.
   [[nodiscard]] virtual std::vector<SurfacePointReport> point_reports(
       const NodeStep& instant, const double* history) const = 0;
+  /// Adds the pressure of the last step at the nodes of solids, and their gaps at its end. Edges
+  /// add nothing, as they press along lines. @param nodes  By the system's node numbers.
+  virtual void add_to_nodes(const NodeStep& /*instant*/, const double* /*history*/,
+                            std::vector<NodeContact>& /*nodes*/) const {}
   /// Deepest overlap at an instant, if it exceeds what the law allows. An overlap far from any
   /// surface may not be found, see SolidInside.
   [[nodiscard]] virtual std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const = 0;

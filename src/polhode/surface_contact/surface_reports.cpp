@@ -267,4 +267,24 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
   return list;
 }
 
+void SurfaceContact::add_to_nodes(const NodeStep& instant, const double* history,
+                                  std::vector<NodeContact>& nodes) const {
+  if (of_cable()) return;
+  std::vector<double> areas(nodes.size(), 0.0);
+  for (int i = 0; i < size(); ++i) {
+    const SurfacePoints::Point& point = points_.points[static_cast<std::size_t>(i)];
+    const double gap = distance(local(instant.x_n1, i));
+    double sum = 0.0;  // shape functions are negative at some corners
+    for (int k = 0; k < n_; ++k) sum += std::abs(point.N[k]);
+    for (int k = 0; k < n_; ++k) {
+      const auto number = static_cast<std::size_t>(this->nodes(i)[static_cast<std::size_t>(k)]);
+      const double area = std::abs(point.N[k]) / sum * point.area;
+      areas[number] += area;
+      nodes[number].force += area * std::max(memory_of(history, i).pressure, 0.0);
+      nodes[number].gap = std::min(nodes[number].gap, gap);
+    }
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].area = std::max(nodes[i].area, areas[i]);
+}
+
 }  // namespace polhode::surface_contact

@@ -108,6 +108,24 @@ std::string little_endian(std::uint32_t value) {
   return text;
 }
 
+Document material_of(const std::array<double, 3>& color) {
+  return {{"pbrMetallicRoughness",
+           {{"baseColorFactor", {color[0], color[1], color[2], 1.0}},
+            {"metallicFactor", 0.05},
+            {"roughnessFactor", 0.6}}},
+          {"doubleSided", true}};
+}
+
+/// Linear parts of red, green and blue of "#rrggbb", which is in sRGB (IEC 61966-2-1).
+std::array<double, 3> linear_color(const std::string& text) {
+  std::array<double, 3> color{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double x = std::stoi(text.substr(1 + 2 * k, 2), nullptr, 16) / 255.0;
+    color[k] = x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  }
+  return color;
+}
+
 std::string block(const char* type, std::string bytes, char filling) {
   bytes.resize((bytes.size() + 3) / 4 * 4, filling);
   return little_endian(static_cast<std::uint32_t>(bytes.size())) + std::string(type, 4) + bytes;
@@ -129,12 +147,7 @@ std::string scene_glb(const SceneData& scene) {
            nodes = Document::array(), channels = Document::array(), samplers = Document::array(),
            materials = Document::array();
   Numbers data(views, accessors);
-  for (const auto& [r, g, b] : kPalette)
-    materials.push_back({{"pbrMetallicRoughness",
-                          {{"baseColorFactor", {r, g, b, 1.0}},
-                           {"metallicFactor", 0.05},
-                           {"roughnessFactor", 0.6}}},
-                         {"doubleSided", true}});
+  for (const auto& color : kPalette) materials.push_back(material_of(color));
   std::vector<std::array<std::size_t, 2>> shapes;  // Accessors of points and corners.
   for (const Document& mesh : m["meshes"])
     shapes.push_back({data.floats(numbers<float>(scene, mesh["points"]), "VEC3", 3, true),
@@ -160,13 +173,18 @@ std::string scene_glb(const SceneData& scene) {
     Document part_nodes = Document::array();
     const std::size_t own = nodes.size();
     nodes.push_back({{"name", body["name"]}});
+    std::size_t material = i % kPalette.size();
+    if (const auto color = body.find("color"); color != body.end()) {
+      material = materials.size();
+      materials.push_back(material_of(linear_color(*color)));
+    }
     for (const Document& part : parts) {
       if (!part.contains("mesh")) continue;
       const auto& [points, corners] = shapes[part["mesh"].get<std::size_t>()];
       meshes.push_back({{"primitives",
                          {{{"attributes", {{"POSITION", points}}},
                            {"indices", corners},
-                           {"material", i % kPalette.size()}}}}});
+                           {"material", material}}}}});
       Document node = {{"mesh", meshes.size() - 1}, {"translation", part["p"]}};
       if (part.contains("q"))
         node["rotation"] = {part["q"][1], part["q"][2], part["q"][3], part["q"][0]};

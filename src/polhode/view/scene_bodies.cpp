@@ -137,6 +137,7 @@ void add_bodies(Json& manifest, ChunkList& chunks, const io::ResultsReader& resu
     } else {
       const BodySpec& body = model->bodies[found->second];
       entry["line"] = body.place.line;
+      if (!body.color.empty()) entry["color"] = body.color;
       if (body.fixed) entry["fixed"] = true;
       if (!body.fixed) entry["mass"] = body.mass;
       if (nodes[found->second])

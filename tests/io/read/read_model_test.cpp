@@ -62,6 +62,15 @@ TEST(ReadModel, ResolvesUnitsToSi) {
   EXPECT_DOUBLE_EQ(m.gravity.z(), -9.81);
 }
 
+TEST(ReadModel, TakesColorsByNameAndCode) {
+  const std::string body = "bodies:\n  b: {mass: 1, inertia: [1, 1, 1], color: ";
+  EXPECT_EQ(read(body + "\"#40C0ff\"}\n").bodies[0].color, "#40C0ff");
+  EXPECT_EQ(read(body + "teal}\n").bodies[0].color, "#2f8f8b");
+  EXPECT_EQ(read(kTwo).bodies[0].color, "");
+  EXPECT_EQ(first_fault(body + "gren}\n"), "bodies.b.color: 'gren' is no color");
+  EXPECT_EQ(first_fault(body + "\"#40c0f\"}\n"), "bodies.b.color: '#40c0f' is no color");
+}
+
 TEST(ReadModel, TakesEveryFormOfOrientationForTheSameTurn) {
   // A turn by 90 deg about z.
   for (const char* form :

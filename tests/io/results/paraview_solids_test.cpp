@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/results/paraview.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <regex>
@@ -85,6 +86,32 @@ TEST(SolidsWriter, WritesEverySolidAtItsPosition) {
   const auto tensor = array<float>(vtu, "<PointData", "cauchy");
   EXPECT_EQ(std::vector<float>(tensor.begin(), tensor.begin() + 6),
             (std::vector<float>{1, 2, 3, 4, 5, 6}));  // xx, yy, zz, xy, yz, xz.
+}
+
+/// Fields of contact of one of two solids; the other one has none.
+TEST(SolidsWriter, WritesFieldsOfContact) {
+  const test::Scratch scratch;
+  const solids::Mesh hex =
+      solids::make_mesh("hex", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "hex8");
+  io::SolidsWriter writer(scratch / "view", "solids", {"a", "b"}, {&hex, &hex});
+  SolidContactFields fields{std::vector<double>(8, 0.0), std::vector<double>(8, 0.5)};
+  fields.pressure[3] = 2.0;
+  writer.append(0.5, {report_of(hex), report_of(hex)}, {{}, fields});
+  writer.append(0.6, {report_of(hex), report_of(hex)});
+  writer.close();
+  const std::string vtu = io::read_file(scratch / "view/solids/000000.vtu");
+  const auto pressure = array<float>(vtu, "<PointData", "contact_pressure");
+  const auto gap = array<float>(vtu, "<PointData", "contact_gap");
+  ASSERT_EQ(pressure.size(), 16u);
+  ASSERT_EQ(gap.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(std::isnan(pressure[i]), i < 8);
+    EXPECT_EQ(std::isnan(gap[i]), i < 8);
+  }
+  EXPECT_EQ(pressure[11], 2.0F);
+  EXPECT_EQ(gap[15], 0.5F);
+  EXPECT_THAT(io::read_file(scratch / "view/solids/000001.vtu"),
+              testing::Not(HasSubstr("contact_pressure")));
 }
 
 /// Node order of VTK's cells of positive volume: the normal of the triangle 0 1 2 of a wedge points

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
+#include <map>
+#include <string_view>
 
 #include <polhode/compile/shape_surface.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/io/read/read_context.hpp>
 
@@ -36,9 +40,34 @@ class BodyReader {
     read_velocities();
     read_hold();
     read_body_motion();
+    read_color();
   }
 
  private:
+  void read_color() {
+    static const std::map<std::string_view, const char*> kNamed{
+        {"red", "#c1443c"},   {"orange", "#d9822b"}, {"yellow", "#e3c23a"}, {"green", "#4f9d58"},
+        {"teal", "#2f8f8b"},  {"blue", "#3b73b9"},   {"purple", "#8159a8"}, {"pink", "#d77fa1"},
+        {"brown", "#8a6242"}, {"black", "#26292e"},  {"gray", "#8c9197"},   {"white", "#f2f2ee"}};
+    const auto text = section_.text("color");
+    if (!text) return;
+    if (const auto named = kNamed.find(*text); named != kNamed.end()) {
+      body_.color = named->second;
+      return;
+    }
+    const auto is_digit = [](unsigned char c) { return std::isxdigit(c) != 0; };
+    if (text->size() == 7 && text->front() == '#' &&
+        std::all_of(text->begin() + 1, text->end(), is_digit)) {
+      body_.color = *text;
+      return;
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, code] : kNamed) names.emplace_back(name);
+    section_.fault(
+        "color", quote(*text) + " is no color",
+        did_you_mean(*text, names) + "Write \"#4080c0\", or one of " + name_list(names) + ".");
+  }
+
   [[nodiscard]] static bool weighs(const ShapeSpec& shape) {
     return shape.type != "plane" && shape.type != "height_field";
   }

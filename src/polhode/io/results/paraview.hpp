@@ -9,6 +9,7 @@
 #include <polhode/io/results/paraview_series.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
+#include <polhode/simulation/solid_contact_fields.hpp>
 #include <polhode/simulation/solid_report.hpp>
 
 namespace polhode::io {
@@ -75,8 +76,11 @@ class SolidsWriter {
         solids_(std::move(solids)),
         meshes_(std::move(meshes)) {}
 
-  /// @param reports  Of every solid. @throws FileError
-  void append(double t, const std::vector<SolidReport>& reports);
+  /// @param reports  Of every solid.
+  /// @param contacts  Likewise: "contact_pressure" [Pa] and "contact_gap" [m], NaN where there is
+  /// none; empty: neither is written. @throws FileError
+  void append(double t, const std::vector<SolidReport>& reports,
+              const std::vector<SolidContactFields>& contacts = {});
   [[nodiscard]] std::size_t frames() const { return series_.frames(); }
   void sync() { series_.sync(); }    ///< @throws FileError
   void close() { series_.close(); }  ///< @throws FileError

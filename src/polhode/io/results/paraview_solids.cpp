@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <limits>
 #include <numeric>
 
 #include <polhode/core/format.hpp>
@@ -65,8 +66,9 @@ std::vector<std::size_t> vtk_order(const solids::CellShape& shape) {
   return order;
 }
 
-void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
-  std::vector<float> points, displacements, velocities, stretches, errors;
+void SolidsWriter::append(double t, const std::vector<SolidReport>& reports,
+                          const std::vector<SolidContactFields>& contacts) {
+  std::vector<float> points, displacements, velocities, stretches, errors, pressures, gaps;
   FrameValues at_nodes, in_cells;
   Cells cells;
   for (std::size_t s = 0; s < reports.size(); ++s) {
@@ -83,6 +85,13 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
       add_vectors(stretches, {e.principal_stretches});
     }
     for (const double error : nodal.stress_error) errors.push_back(static_cast<float>(error));
+    if (contacts.empty()) continue;
+    const auto add = [&](std::vector<float>& list, const std::vector<double>& field) {
+      list.insert(list.end(), field.begin(), field.end());
+      list.resize(points.size() / 3, std::numeric_limits<float>::quiet_NaN());
+    };
+    add(pressures, contacts[s].pressure);
+    add(gaps, contacts[s].gap);
   }
   VtkFile file("UnstructuredGrid");
   file.indices("solid", solids_);
@@ -97,6 +106,10 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
   file.array("displacement", 3, displacements);
   file.array("velocity", 3, velocities);
   at_nodes.write(file);
+  if (!contacts.empty()) {
+    file.array("contact_pressure", 1, pressures);
+    file.array("contact_gap", 1, gaps);
+  }
   file.text("</PointData>\n<CellData Scalars=\"von_mises\">\n");
   in_cells.write(file);
   file.array("principal_stretches", 3, stretches);

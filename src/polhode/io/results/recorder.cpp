@@ -172,9 +172,17 @@ void Recorder::frame(const Simulation& simulation) {
   if (impl_->solids) {
     std::vector<SolidReport> reports;
     reports.reserve(simulation.solids().size());
-    for (int i = 0; i < static_cast<int>(simulation.solids().size()); ++i)
+    std::vector<SolidContactFields> contacts;
+    bool touching = false;
+    for (int i = 0; i < static_cast<int>(simulation.solids().size()); ++i) {
       reports.push_back(simulation.solid(i));
-    impl_->solids->append(simulation.time(), reports);
+      contacts.emplace_back();
+      if (!has_contact_fields(simulation, i)) continue;
+      contacts.back() = solid_contact_fields(simulation, i);
+      touching = true;
+    }
+    if (!touching) contacts.clear();
+    impl_->solids->append(simulation.time(), reports, contacts);
   }
   if (impl_->lines) {
     std::vector<BeamReport> beams;

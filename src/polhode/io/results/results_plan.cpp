@@ -29,6 +29,8 @@ constexpr StoredQuantity kNodeQuantities[] = {{"displacement", 3, "m"},
                                               {"cauchy", 6, "Pa"},
                                               {"von_mises", 1, "Pa"},
                                               {"strain_energy_density", 1, "J/m^3"}};
+constexpr StoredQuantity kContactFields[] = {{"contact_pressure", 1, "Pa"},
+                                             {"contact_gap", 1, "m"}};
 constexpr StoredQuantity kElementQuantities[] = {{"cauchy", 6, "Pa"},
                                                  {"von_mises", 1, "Pa"},
                                                  {"principal_stretches", 3, "-"},
@@ -109,6 +111,8 @@ void plan_solids(const ResultsLayout& layout, FilePlan& p) {
     p.add_all(part(solid.name, "nodes"), kNodeQuantities, solid.mesh->nodes.size());
     p.add_all(part(solid.name, "elements"), kElementQuantities,
               static_cast<std::size_t>(solid.mesh->element_count()));
+    if (solid.touches)
+      p.add_all(part(solid.name, "nodes"), kContactFields, solid.mesh->nodes.size());
     for (const std::string& interface : solid.interfaces)
       for (const StoredQuantity& q : kReactions)
         p.add(part(solid.name, "interfaces/" + interface), q, {q.size});

@@ -55,8 +55,9 @@ ResultsLayout results_layout(const Simulation& simulation) {
     if (load.solid < 0) layout.loads.push_back({load.name, load.type});
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const SolidPlan& plan = simulation.solids()[i].plan;
-    layout.solids.push_back(
-        {model.solids[i].name, &plan.mesh, plan.start, simulation.interfaces(static_cast<int>(i))});
+    layout.solids.push_back({model.solids[i].name, &plan.mesh, plan.start,
+                             simulation.interfaces(static_cast<int>(i)),
+                             has_contact_fields(simulation, static_cast<int>(i))});
   }
   layout.nodes = are_nodes(model);
   for (const BeamSpec& beam : model.beams) {
@@ -106,6 +107,9 @@ ResultsFrame results_frame(const Simulation& simulation) {
   }
   for (int i = 0; i < static_cast<int>(model.solids.size()); ++i) {
     frame.solids.push_back(simulation.solid(i));
+    frame.solid_contacts.emplace_back();
+    if (has_contact_fields(simulation, i))
+      frame.solid_contacts.back() = solid_contact_fields(simulation, i);
     const auto count = static_cast<int>(simulation.interfaces(i).size());
     frame.interfaces.emplace_back();
     for (int k = 0; k < count; ++k)

@@ -8,6 +8,7 @@
 
 #include <polhode/io/results/hdf5_file.hpp>
 #include <polhode/simulation/simulation_details.hpp>
+#include <polhode/simulation/solid_contact_fields.hpp>
 #include <polhode/simulation/solid_report.hpp>
 
 namespace polhode::io {
@@ -38,6 +39,7 @@ struct ResultsLayout {
     const solids::Mesh* mesh = nullptr;  ///< Must outlive the file.
     std::vector<Vec3> reference;         ///< Nodes at the start, world [m].
     std::vector<std::string> interfaces;
+    bool touches = false;  ///< Has fields of contact.
   };
   struct BeamEntry {
     std::string name;
@@ -77,6 +79,7 @@ struct ResultsFrame {
   std::vector<Vec3> force, moment;             ///< Of a on b, at the joint's point on b, world.
   std::vector<Vec3> impulse, angular_impulse;  ///< Of joints, see JointReport; may be empty.
   std::vector<SolidReport> solids;
+  std::vector<SolidContactFields> solid_contacts;        ///< By solid; empty without contact.
   std::vector<std::vector<InterfaceReport>> interfaces;  ///< By solid.
   std::vector<BeamReport> beams;
   std::vector<CableReport> cables;

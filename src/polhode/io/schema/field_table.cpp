@@ -217,6 +217,13 @@ const FieldTable& body_fields() {
            .kind = kSection,
            .meaning = "How its shapes take part in contact; needs 'contacts'.",
            .table = "contact side"},
+          {.name = "color",
+           .kind = kText,
+           .meaning = "Its color in pictures: \"#rrggbb\", in quotes, or red, orange, yellow, "
+                      "green, teal, blue, "
+                      "purple, pink, brown, black, gray or white.",
+           .standard = "chosen by the page",
+           .since = "0.2"},
           {.name = "hold",
            .kind = kChoices,
            .meaning = "Freedoms fixed at their start values: a generic joint to ground at the "
