@@ -92,7 +92,7 @@ def test_script_and_sweep_of_the_book(tutorials: Any, tmp_path: pathlib.Path, mo
     rows = sweeps_of(page, tmp_path)["delays.csv"]
     delays = [tutorials.book(row["variables.nudge"]).first for row in rows]
     assert len(rows) == 4
-    assert [row["first(probes.seen.wy > 0)"] for row in rows] == pytest.approx(delays, abs=1e-4)
+    assert [row["first(probes.book.wy < 0)"] for row in rows] == pytest.approx(delays, abs=1e-4)
     scripts = SNIPPET.findall(page.read_text())
     names = execute(scripts, page)
     assert len(scripts) == 1 and (tmp_path / "polhodes.png").stat().st_size > 10000
