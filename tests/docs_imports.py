@@ -38,8 +38,10 @@ def main():
     lists = re.search(r"^dependencies = \[(.*?)\]", settings, re.M | re.S)[1] + re.search(r"^all = \[(.*?)\]", settings, re.M | re.S)[1]
     installed = {re.match(r"[\w-]+", name)[0].replace("-", "_") for name in re.findall(r'"([^"]+)"', lists)}
     shown = (ROOT / "docs/python/README.md").read_text()
-    extras = {name for name, content in re.findall(r'^(\w+) = \["(\w+)"\]', settings, re.M) if name == content}
-    for name in extras:
+    groups = re.search(r"^\[project.optional-dependencies\]\n(.*?)\n\n", settings, re.M | re.S)[1]
+    single = dict(re.findall(r'^(\w+) = \["(\w+)"\]', groups, re.M))
+    extras = set(single.values())
+    for name in single:
         assert f"polhode[{name}]" in shown, f"docs/python/README.md does not name the extra [{name}]"
     found = {}
     for path, text in programs():

@@ -17,7 +17,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._errors import Fault, ModelError, NotConverged
+from ._errors import Fault, ModelError, NotConverged, NotReached
 from ._functions import BodyReading, StateFunction
 from ._model import Model, from_text, load
 from ._native import version as __version__
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from ._fit import Experiment, Fit, fit
     from ._frameworks import jax_function, torch_function
     from ._gradient import Gradient, gradient
+    from ._joint_space import Pose
     from ._linear import StateSpace, inverse_dynamics, linearize
     from ._modes import Matrices, Mode, Modes, matrices, modes, spin_modes
     from ._result import Result, open
@@ -45,6 +46,7 @@ _LATER = {
     "_fit": ["Experiment", "Fit", "fit"],
     "_frameworks": ["jax_function", "torch_function"],
     "_gradient": ["Gradient", "gradient"],
+    "_joint_space": ["Pose"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes", "spin_modes"],
     "_result": ["Result", "open"],
@@ -52,23 +54,23 @@ _LATER = {
     "_simulation": ["Simulation", "Step"],
     "_sweep": ["sweep"],
 }
-for _error in (Fault, ModelError, NotConverged):
+for _error in (Fault, ModelError, NotConverged, NotReached):
     _error.__module__ = __name__  # public names in tracebacks
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
     "BodyReading", "Experiment", "Fault", "Fit", "Gradient", "Matrices", "Minimum", "Mode", "Model", "ModelError",
-    "Modes", "NotConverged", "Result", "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations",
-    "Uncertainty", "__version__", "fit", "from_text", "gradient", "inverse_dynamics", "jax_function", "linearize",
-    "load", "matrices", "minimize", "modes", "open", "rotations", "run", "spin_modes", "step_equations", "sweep",
-    "torch_function",
+    "Modes", "NotConverged", "NotReached", "Pose", "Result", "Simulation", "StateFunction", "StateSpace", "Step",
+    "StepEquations", "Uncertainty", "__version__", "fit", "from_text", "gradient", "inverse_dynamics",
+    "jax_function", "linearize", "load", "matrices", "minimize", "modes", "open", "rotations", "run", "spin_modes",
+    "step_equations", "sweep", "torch_function",
 ]
 
 
 def __getattr__(name: str) -> Any:
     """Shapes, made from the engine's tables, and rarely used modules, both loaded at first use."""
-    if name == "rotations":
-        return importlib.import_module(".rotations", __name__)
+    if name in ("gym", "rotations"):
+        return importlib.import_module(f".{name}", __name__)
     if name in _HOME:
         return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     if name[:1].isupper():

@@ -60,6 +60,18 @@ class NotConverged(RuntimeError):
         return (type(self), (str(self), self.result))
 
 
+class NotReached(ValueError):
+    """Error for a target of inverse kinematics that was not reached. q: the coordinates that come nearest, with the
+    distance [m] and the angle [rad] that remain."""
+
+    def __init__(self, message: str, q: Any, distance: float, angle: float) -> None:
+        super().__init__(message)
+        self.q, self.distance, self.angle = q, distance, angle
+
+    def __reduce__(self) -> "tuple[Any, ...]":
+        return (type(self), (str(self), self.q, self.distance, self.angle))
+
+
 def fault(path: str, what: str, hint: str) -> ModelError:
     """A ModelError of one fault that has a path only."""
     return ModelError([(None, None, None, path, what, hint, "")])

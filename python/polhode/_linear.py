@@ -153,6 +153,8 @@ def _input(engine: Any, name: str) -> "tuple[str, int]":
     """Load and component of "loads.push.force.x", "push.x" or "motor"."""
     parts = name.split(".")
     parts = parts[1:] if parts[0] == "loads" else parts
+    if ".".join(parts) in engine.loads:
+        return ".".join(parts), -1
     letter = "xyz".find(parts[-1]) if len(parts) > 1 else -1
     _known(parts[0], engine.loads, "load")
     return parts[0], letter

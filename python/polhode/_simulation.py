@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Callable, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _native
 from ._errors import NotConverged
+from ._joint_space import JointSpace, drive
 from ._model import Model, Overrides, load
 from ._result import Report, Result, Table, in_body_axes
 from ._stores import MemoryStore, read_only
@@ -121,7 +122,7 @@ class BodyNow(_Now):
 
     def set(self, **values: Any) -> None:
         """Sets several quantities at once: body.set(position=..., velocity=...). Raises TypeError for
-        others, ModelError if the joints cannot be assembled there, with solids, with contacts and in statics."""
+        others, ModelError if the joints cannot be assembled there, if shapes overlap, with solids and in statics."""
         numbers = {name: None if (v := values.get(name)) is None else [float(x) for x in v] for name in self._settable}
         if set(values) - set(self._settable):
             raise TypeError(
@@ -173,7 +174,7 @@ class ProbeNow(Table):
         """The constructor of Table has none to give."""
 
 
-class Simulation:
+class Simulation(JointSpace):
     """A model with its state, for steps and runs; the state can be read, set, copied and restored.
 
         sim = polhode.Simulation(m)
@@ -186,12 +187,23 @@ class Simulation:
     joints[name] has coordinates, rates, force, moment and residual. What bodies[name], joints[name],
     loads[name] and probes[name] return follows the simulation: every access reads its present state, and
     arrays are read-only copies. Raises ModelError for a model with faults.
+
+    q, qd and qdd are all coordinates of joints and their derivatives as arrays, in the order of `coordinates`.
+    tau=True, or a list of coordinates, adds moments and forces along them that are set as the array sim.tau.
     """
 
-    def __init__(self, model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides = None) -> None:
+    def __init__(
+        self,
+        model: "Union[Model, str, os.PathLike[str]]",
+        overrides: Overrides = None,
+        *,
+        tau: "Union[bool, Sequence[str], None]" = None,
+    ) -> None:
         model = model if isinstance(model, Model) else load(model)
         self._compiled = model._compile(overrides)
+        self._driven = drive(self._compiled, tau)
         self._engine = _native.Engine(self._compiled)
+        self._end = 1.0 if self._compiled.analysis == "statics" else float(self._compiled.duration)
 
     @property
     def time(self) -> float:
@@ -201,7 +213,7 @@ class Simulation:
     @property
     def end(self) -> float:
         """End time of the model's analysis [s]."""
-        return 1.0 if self._compiled.analysis == "statics" else float(self._compiled.duration)
+        return self._end
 
     @property
     def bodies(self) -> "_Things":
@@ -240,7 +252,7 @@ class Simulation:
     def step(self, until: Optional[float] = None) -> Step:
         """Takes one accepted step, not beyond `until` [s]. Raises NotConverged if there is none; the state
         is then that before the step."""
-        accepted, t, dt, rejected, iterations, message = self._engine.step(self.end if until is None else until)
+        accepted, t, dt, rejected, iterations, message = self._engine.step(self._end if until is None else until)
         if not accepted:
             raise NotConverged(message)
         return Step(t, dt, iterations, rejected)
@@ -277,7 +289,7 @@ class Simulation:
 
     @property
     def state(self) -> bytes:
-        """Complete state, bit for bit, as bytes to store, compare and restore."""
+        """Complete state with tau, bit for bit, as bytes to store, compare and restore."""
         return bytes(self._engine.state)
 
     def restore(self, state: bytes) -> None:
@@ -288,7 +300,7 @@ class Simulation:
     def copy(self) -> "Simulation":
         """An independent simulation at the same state."""
         other = object.__new__(Simulation)
-        other._compiled = self._compiled
+        other._compiled, other._driven, other._end = self._compiled, self._driven, self._end
         other._engine = self._engine.copy()
         return other
 

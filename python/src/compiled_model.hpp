@@ -14,6 +14,8 @@ namespace polhode::python {
 struct CompiledModel {
   Model model;
   nb::object calls = nb::list();
+  /// Joint coordinates that are to be independent.
+  std::vector<std::string> preferred{};
 };
 
 /// Slots by which Python's collector sees the member `calls` of a bound type.

@@ -10,9 +10,6 @@
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/results/summary_json.hpp>
 #include <polhode/loads/registry.hpp>
-#include <polhode/simulation/method.hpp>
-#include <polhode/stepping/start.hpp>
-#include <polhode/system/state_archive.hpp>
 
 namespace polhode::python {
 
@@ -112,52 +109,6 @@ std::string Engine::run(Recording* recording, const std::string& folder,
 std::string Engine::summary() {
   const RunSummary summary = use()->summary();
   return io::summary_json(summary, {.end = end_name(summary.end)});
-}
-
-nb::bytes Engine::state() const {
-  const std::string bytes = sealed_state(simulation_->system(), simulation_->state());
-  return nb::bytes(bytes.data(), bytes.size());
-}
-
-void Engine::restore(const nb::bytes& bytes) {
-  const Use used(*this);
-  State state = state_from_sealed(simulation_->system(), {bytes.c_str(), bytes.size()}, "state");
-  simulation_ = std::make_unique<Simulation>(model(), std::move(state));
-}
-
-void Engine::set_motions(const std::map<int, BodyMotion>& motions) {
-  if (motions.empty()) return;
-  const Use used(*this);
-  const Model& m = model();
-  const std::string where = format("bodies.{}", m.bodies.at(motions.begin()->first).name);
-  if (m.analysis.type != "dynamics" || !m.solids.empty() || simulation_->has_contacts())
-    throw InputError(where, "cannot be set in a model of statics, with solids or with contacts",
-                     "Change the model and start a new simulation");
-  for (const auto& [body, motion] : motions)
-    if (m.bodies.at(body).fixed)
-      throw InputError(format("bodies.{}", m.bodies[body].name), "is fixed", "Set another body");
-  const System& system = simulation_->system();
-  State state = system.initial_state();
-  int moving = 0;
-  for (int i = 0; i < static_cast<int>(m.bodies.size()); ++i)
-    if (!m.bodies[i].fixed) {
-      const auto given = motions.find(i);
-      state.set_motion(system.slot(moving++),
-                       given != motions.end() ? given->second : simulation_->body(i));
-    }
-  state.t = simulation_->time();
-  Method method = choose_method(system, m.analysis);
-  StartOptions options;
-  options.smooth_multipliers =
-      m.analysis.smooth_multipliers && m.analysis.step && method.control.order == 2;
-  const StartReport report =
-      start(system, state, method.ga, m.analysis.step.value_or(0.0), options);
-  if (!report.assembled)
-    throw InputError(where, "cannot be set: the joints cannot be assembled there",
-                     "Give a position closer to the present one");
-  Stepper stepper(system, std::move(method.engine), method.ga, method.control, *method.kernels);
-  stepper.begin(state);
-  simulation_ = std::make_unique<Simulation>(m, std::move(state));
 }
 
 namespace {
@@ -271,6 +222,13 @@ std::vector<std::string> names_of(const Specs& specs) {
   return names;
 }
 
+/// Steps to a time, without Python in between. @returns why a step was not accepted, or nothing.
+std::string advance_engine(Engine& engine, double until) {
+  const Engine::Use simulation = engine.use();
+  const nb::gil_scoped_release unlocked;
+  return advance(*simulation, until);
+}
+
 nb::tuple step(Engine& engine, double limit) {
   StepReport report;
   {
@@ -285,13 +243,15 @@ nb::tuple step(Engine& engine, double limit) {
 }  // namespace
 
 void bind_engine(nb::module_& m) {
-  nb::class_<Engine>(m, "Engine", "A compiled model with its state.",
-                     nb::type_slots(CallSlots<Engine>::slots))
-      .def(nb::init<const CompiledModel&>(), nb::arg("model"))
+  nb::class_<Engine> engine(m, "Engine", "A compiled model with its state.",
+                            nb::type_slots(CallSlots<Engine>::slots));
+  bind_joint_space(engine);
+  engine.def(nb::init<const CompiledModel&>(), nb::arg("model"))
       .def("record", [](Engine& e) { return Recording(*e.use()); })
       .def("run", &Engine::run, nb::arg("recording").none(), nb::arg("folder"),
            nb::arg("model_text"), nb::arg("overrides"), nb::arg("progress").none())
       .def("step", &step, nb::arg("limit"))
+      .def("advance", &advance_engine, nb::arg("until"))
       .def("record_frame",
            [](Engine& e, Recording& r) {
              const Engine::Use simulation = e.use();

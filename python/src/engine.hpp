@@ -2,13 +2,16 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include <polhode/io/read/model_places.hpp>
 #include <polhode/io/results/write_results.hpp>
+#include <polhode/simulation/held_values.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
 #include "compiled_model.hpp"
+#include "coordinates.hpp"
 #include "recording.hpp"
 
 namespace polhode::python {
@@ -36,7 +39,8 @@ auto located(const io::ModelPlaces& places, const Make& make) {
 /// A simulation with its names, for Python.
 class Engine {
  public:
-  explicit Engine(const CompiledModel& compiled) : calls(compiled.calls) {
+  explicit Engine(const CompiledModel& compiled)
+      : calls(compiled.calls), preferred_(compiled.preferred) {
     const nb::gil_scoped_release unlocked;
     simulation_ = located(io::ModelPlaces(compiled.model),
                           [&] { return std::make_unique<Simulation>(compiled.model); });
@@ -80,18 +84,47 @@ class Engine {
   void restore(const nb::bytes& bytes);
   [[nodiscard]] Engine copy() {
     const Use used(*this);
-    return {model(), simulation_->state(), calls};
+    Engine other(model(), simulation_->state(), calls);
+    other.preferred_ = preferred_;
+    other.coordinates_ = coordinates_;
+    other.start_ = start_;
+    return other;
   }
   /// Sets positions and velocities of moving bodies, by index, at the present time. Then joints are
   /// assembled, velocities projected, and turn counts and the energy balance reset.
-  /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
+  /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts
+  /// of surfaces.
   void set_motions(const std::map<int, BodyMotion>& motions);
+
+  /// Joint coordinates, made at first use. @throws InputError for a model that has none.
+  [[nodiscard]] const Coordinates& coordinates();
+  /// Present motions of all bodies of the model, as Coordinates::motions().
+  [[nodiscard]] JointSpace::Motions motions();
+  /// Places all bodies at coordinates; without: as they are. Likewise with rates.
+  void set_coordinates(const std::optional<std::vector<double>>& positions,
+                       const std::optional<std::vector<double>>& rates);
+  /// Returns to the start of the model; numbers held by it become zero.
+  void reset();
+  /// Numbers of loads that are set between steps; null if there are none.
+  [[nodiscard]] std::shared_ptr<HeldNumbers> held() const { return held_numbers(model()); }
 
   nb::object calls;  ///< Owns the callables of the loads, see CompiledModel.
 
  private:
+  /// Motions of the moving bodies, at the present time.
+  void put(const std::vector<BodyMotion>& moving, const std::string& where,
+           const std::vector<double>& positions = {});
+
+  std::vector<std::string> preferred_;
+  std::shared_ptr<const Coordinates> coordinates_;  ///< Null until used.
+  std::shared_ptr<const State> start_;              ///< Likewise.
   std::unique_ptr<Simulation> simulation_;
   bool busy_ = false;  ///< Guarded by Python's lock: set and read while it is held.
 };
+
+/// Steps to a time. @returns why a step was not accepted, or an empty text.
+[[nodiscard]] std::string advance(Simulation& simulation, double until);
+
+void bind_joint_space(nb::class_<Engine>& engine);
 
 }  // namespace polhode::python

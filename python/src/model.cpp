@@ -3,6 +3,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/held_value.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/core/time_sum.hpp>
 #include <polhode/io/read/read_import.hpp>
@@ -116,7 +117,9 @@ void add_offset(CompiledModel& compiled, const std::string& load, int component,
   Model& model = compiled.model;
   LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
   const auto constant = std::make_shared<io::ConstantFunction>(offset);
-  const auto raised = [&](const TimeFunctionPtr& f) {
+  const auto raised = [&](const TimeFunctionPtr& f) -> TimeFunctionPtr {
+    if (const HeldValue* held = held_value(f))
+      return std::make_shared<HeldValue>(held->numbers(), held->index(), held->offset() + offset);
     return std::make_shared<TimeSum>(TimeVector{f, constant, nullptr}, std::array{1.0, 1.0, 0.0});
   };
   if (component < 0 && spec.value)
@@ -159,7 +162,7 @@ void bind_model(nb::module_& m) {
            nb::arg("tangent").none(), nb::arg("coordinate"), nb::arg("reads_velocity"))
       .def("copy",
            [](const CompiledModel& c) {
-             return CompiledModel{c.model, nb::list(c.calls)};
+             return CompiledModel{c.model, nb::list(c.calls), c.preferred};
            })
       .def("add_offset", &add_offset, nb::arg("load"), nb::arg("component"), nb::arg("offset"))
       .def_prop_ro("step", [](const CompiledModel& c) { return c.model.analysis.step; })

@@ -6,6 +6,7 @@ NB_MODULE(_native, m) {
   m.attr("version") = POLHODE_VERSION;
   polhode::python::bind_errors(m);
   polhode::python::bind_model(m);
+  polhode::python::bind_held_loads(m);
   polhode::python::bind_recording(m);
   polhode::python::bind_engine(m);
   polhode::python::bind_results_reader(m);
@@ -13,4 +14,5 @@ NB_MODULE(_native, m) {
   polhode::python::bind_modes(m);
   polhode::python::bind_equations(m);
   polhode::python::bind_gradient(m);
+  polhode::python::bind_workers(m);
 }

@@ -23,6 +23,7 @@ namespace nb = nanobind;
 
 void bind_errors(nb::module_& m);
 void bind_model(nb::module_& m);
+void bind_held_loads(nb::module_& m);
 void bind_recording(nb::module_& m);
 void bind_engine(nb::module_& m);
 void bind_results_reader(nb::module_& m);
@@ -30,6 +31,7 @@ void bind_rotations(nb::module_& m);
 void bind_modes(nb::module_& m);
 void bind_equations(nb::module_& m);
 void bind_gradient(nb::module_& m);
+void bind_workers(nb::module_& m);
 
 using Array = nb::ndarray<nb::numpy, double>;
 using Integers = nb::ndarray<nb::numpy, std::int64_t>;

@@ -100,10 +100,10 @@ void TreeEngine::lay_out_loop_joints() {
 void TreeEngine::add_extra(const OffTreeInteraction& x, const PairTerms& terms,
                            const Trial& trial) {
   const double s = view_.scale;
-  const auto add_own = [&](int slot, const Vec6& wrench, const Mat6& D) {
+  const int first = x.rotations_only ? 3 : 0;  // first nonzero row and column of D
+  const auto add_own = [&](int slot, const Vec6& wrench, const auto& D) {
     if (slot < 0) return;
     RowData* A = extra_rows_[plan_.extra_of_slot[slot]].A;
-    const int first = x.rotations_only ? 3 : 0;  // first nonzero column of D
     for (int i = first; i < 6; ++i)
       for (int j = first; j < 6; ++j) A[i][j] -= s * D(i, j);
     for (int i = 0; i < 6; ++i) A[i][7] -= s * wrench[i];
@@ -119,8 +119,8 @@ void TreeEngine::add_extra(const OffTreeInteraction& x, const PairTerms& terms,
     EdgeRows& e = edge_rows_[x.edge];
     const Mat6& K_bp = x.edge_child_is_b ? terms.D_ba : terms.D_ab;
     const Mat6& K_pb = x.edge_child_is_b ? terms.D_ab : terms.D_ba;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) {
+    for (int i = first; i < 6; ++i)
+      for (int j = first; j < 6; ++j) {
         e.K_bp[i][j] -= s * K_bp(i, j);
         e.K_pb[i][j] -= s * K_pb(i, j);
       }

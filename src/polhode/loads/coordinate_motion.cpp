@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/loads/coordinate_motion.hpp>
+#include <polhode/system/angle_gradient.hpp>
 
 namespace polhode {
 
@@ -7,7 +8,7 @@ namespace {
 
 CoordinateMotion step_of(const FreeAngle& angle, const BodyStep& a, const BodyStep& b, double at_n,
                          bool conserving) {
-  const AngleStep s = angle_step(angle, a, b, at_n, conserving);
+  const AngleStep s = angle_gradient(angle, a, b, at_n, conserving);
   CoordinateMotion c;
   c.at_n = s.at_n;
   c.at_alpha = s.at_alpha;

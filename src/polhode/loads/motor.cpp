@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/loads/motor.hpp>
 #include <polhode/math/gauss_rule.hpp>
+#include <polhode/system/angle_gradient.hpp>
 
 namespace polhode {
 
@@ -43,9 +44,10 @@ CoordinateValue Motor::effort(const PairStep& step, const CoordinateMotion& q, c
 }
 
 double Motor::effort(const PairStep& step) const {
-  const CoordinateMotion q = of_motion_ ? coordinate(step) : CoordinateMotion{};
-  const RateStep rate = of_motion_ ? rate_step(q, step.a, step.b) : RateStep{};
-  return effort(step, q, rate, false).value;
+  if (!of_motion_)
+    return function_ ? step.context.load_factor * (*function_)(step.context.t_alpha()) : 0.0;
+  const CoordinateMotion q = coordinate(step);
+  return effort(step, q, rate_step(q, step.a, step.b), false).value;
 }
 
 void Motor::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const {
@@ -58,7 +60,26 @@ void Motor::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows
   rows.second[0] = position ? f.second : f.rate;
 }
 
+/// A moment that is no function of the motion, without terms that are zero.
+void Motor::add_moment(const FreeAngle& angle, const PairStep& step, PairTerms& t) const {
+  const AngleStep s =
+      angle_gradient(angle, step.a, step.b, step.history[kCoordinate], step.context.conserving);
+  const double moment = effort(step);
+  t.wrench_a.tail<3>() -= moment * s.mu;
+  t.wrench_b.tail<3>() += moment * s.mu;
+  if (step.context.tangents) {
+    const Mat3 by_a = moment * s.D_mu_a, by_b = moment * s.D_mu_b;
+    t.D_aa.bottomRightCorner<3, 3>() -= by_a;
+    t.D_ab.bottomRightCorner<3, 3>() -= by_b;
+    t.D_ba.bottomRightCorner<3, 3>() += by_a;
+    t.D_bb.bottomRightCorner<3, 3>() += by_b;
+  }
+  clear_ground_sides(step, t);
+}
+
 void Motor::evaluate(const PairStep& step, PairTerms& t) const {
+  const auto* angle = std::get_if<FreeAngle>(&coordinate_);
+  if (angle && rows() == 0 && !of_motion_) return add_moment(*angle, step, t);
   const CoordinateMotion q = coordinate(step);
   if (of_motion_) {
     const RateStep rate = rate_step(q, step.a, step.b);

@@ -61,6 +61,7 @@ class Motor : public InteractionItem {
   [[nodiscard]] CoordinateValue effort(const PairStep& step, const CoordinateMotion& q,
                                        const RateStep& rate, bool tangents) const;
   [[nodiscard]] double effort(const PairStep& step) const;
+  void add_moment(const FreeAngle& angle, const PairStep& step, PairTerms& terms) const;
   /// Work over the step [J].
   [[nodiscard]] double work_of_step(const PairStep& step) const;
 

@@ -188,6 +188,19 @@ double Controllers::next_time(const State& state, double until) const {
   return next;
 }
 
+bool Controllers::begin(State& state) const {
+  bool begins = false;
+  for (const Item& item : items_) {
+    double* memory = state.history.data() + item.memory;
+    if (memory[ControllerMemory::kCount] != 0.0 || is_off(item, state)) continue;
+    begins = true;
+    if (!item.spec->sample || state.t == 0.0) continue;
+    memory[ControllerMemory::kCount] = std::floor(state.t / *item.spec->sample);
+    memory[ControllerMemory::kTime] = kNever;
+  }
+  return begins;
+}
+
 Controllers::Acted Controllers::act(const Simulation& simulation, State& state) const {
   Acted acted;
   for (const Item& item : items_) {

@@ -39,6 +39,9 @@ class Controllers {
     bool jumps = false;   ///< Its output jumps: earlier forces do not predict later ones.
     std::string blind{};  ///< Description of a controller whose channel has no value.
   };
+  /// Whether a controller has not acted yet, as at the start and where motions were set. The next
+  /// sample of one that is sampled is then the first one after the state's time.
+  [[nodiscard]] bool begin(State& state) const;
   /// Evaluates the controllers that are due.
   Acted act(const Simulation& simulation, State& state) const;
   /// Target, measured value and output of a controller at the instant.

@@ -41,6 +41,7 @@ bool any_near(const std::vector<double>& start, const std::vector<double>& end) 
 
 StepReport Simulation::advance(double t_limit) {
   Impl& s = *impl_;
+  s.notice_held();
   if (!s.events && !s.controllers) return s.advance(t_limit);
   StepReport report;
   if (!s.events) {

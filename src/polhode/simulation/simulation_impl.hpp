@@ -20,6 +20,7 @@
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/simulation/controllers.hpp>
 #include <polhode/simulation/event_watch.hpp>
+#include <polhode/simulation/held_values.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/probe.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
@@ -46,6 +47,8 @@ inline constexpr double kRoundedStrain = 1e-10;
 struct Simulation::Impl {
   Model model;
   ControllerOutputs outputs;
+  std::shared_ptr<HeldNumbers> held;  ///< Set by a program between steps; null if there are none.
+  std::vector<double> reported_held;  ///< Those that the instantaneous results hold for.
   SystemMap map;
   System system;
   Method method;
@@ -62,6 +65,7 @@ struct Simulation::Impl {
   std::string
       pole;  ///< Names a function of time without bounds in the last run(), if there is one.
   double start_seconds = 0.0, output_seconds = 0.0;
+  double last_work = 1.0;  ///< Wall time of the last single step [s].
   // Instantaneous results, computed once per state.
   std::unique_ptr<InstantSolver> instant_solver;
   InstantSolution instant;
@@ -99,6 +103,7 @@ struct Simulation::Impl {
   explicit Impl(Model m)
       : model(std::move(m)),
         outputs(own_outputs(model)),
+        held(own_held_numbers(model)),
         system(build_system(model, &map)),
         contacts(map.contacts, map.contact) {
     method = choose_method(system, model.analysis);
@@ -194,6 +199,7 @@ struct Simulation::Impl {
     report.accepted = false;
     report.message = acted.blind;
   }
+  void begin_control(const Simulation& simulation);
   /// Clears instantaneous results: forces have changed, though positions and time have not.
   void forget_instant() {
     instant_solver.reset();
@@ -218,6 +224,15 @@ struct Simulation::Impl {
         "from being assembled. Choose an instant at which it is assembled, or use a fixed joint, "
         "which keeps the relative position",
         event.name, state.t, system.group(ref.group).kind(), system.name(ref), done.gap);
+  }
+
+  /// Must be called before each step. Past accelerations do not predict those by new numbers; steps
+  /// of a given length at ρ∞ = 1 do not depend on past ones.
+  void notice_held() {
+    if (!held || held->now == held->used) return;
+    held->used = held->now;
+    if (!statics && (model.analysis.rho_inf < 1.0 || !model.analysis.step))
+      stepper->forces_jump(state);
   }
 
   /// Whether an event has ended the run.
@@ -430,6 +445,10 @@ struct Simulation::Impl {
   }
 
   const InstantSolution& at_instant() {
+    if (held && held->now != reported_held) {
+      reported_held = held->now;
+      instant_step = -1;
+    }
     if (instant_step == state.ledger.steps) return instant;
     if (statics) {
       projected = state;

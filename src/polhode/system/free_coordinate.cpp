@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <polhode/system/angle_gradient.hpp>
 #include <polhode/system/angle_quotient.hpp>
 #include <polhode/system/free_coordinate.hpp>
 
@@ -108,8 +109,8 @@ double FreeAngle::acceleration_at_n1(const BodyStep& a, const BodyStep& b) const
   return change.dot(omega_other - omega_base);
 }
 
-AngleStep angle_step(const FreeAngle& angle, const BodyStep& a, const BodyStep& b, double at_n,
-                     bool conserving) {
+AngleStep angle_gradient(const FreeAngle& angle, const BodyStep& a, const BodyStep& b, double at_n,
+                         bool conserving) {
   const BodyStep& base = angle.on_b ? b : a;
   const BodyStep& other = angle.on_b ? a : b;
   const Carried e = base.vector(angle.E), f = base.vector(angle.F), d = other.vector(angle.D);
@@ -127,6 +128,12 @@ AngleStep angle_step(const FreeAngle& angle, const BodyStep& a, const BodyStep& 
   s.D_mu_b = sign * (angle.on_b ? g.D_mu_base : g.D_mu_other);
   s.D_alpha_a = angle.on_b ? g.D_alpha_other : g.D_alpha_base;
   s.D_alpha_b = angle.on_b ? g.D_alpha_base : g.D_alpha_other;
+  return s;
+}
+
+AngleStep angle_step(const FreeAngle& angle, const BodyStep& a, const BodyStep& b, double at_n,
+                     bool conserving) {
+  AngleStep s = angle_gradient(angle, a, b, at_n, conserving);
   const Vec3 omega = b.omega_alpha() - a.omega_alpha();
   s.rate = s.mu.dot(omega);
   s.D_rate_a = s.D_mu_a.transpose() * omega - a.omega_alpha_tangent().transpose() * s.mu;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <polhode/compile/build_system.hpp>
+#include <polhode/system/unilateral_row.hpp>
+
+namespace polhode::python {
+
+Coordinates::Coordinates(const Model& model, const System& system,
+                         const std::vector<std::string>& preferred)
+    : space_(model, preferred),
+      limits_(coordinate_limits(model, space_)),
+      fixed_(space_.model_motions()) {
+  int moving = 0;
+  for (const BodySpec& body : model.bodies) body_.push_back(body.fixed ? kGround : moving++);
+  std::vector<int> joints;
+  const auto& all = system.interactions();
+  for (int i = 0; i < static_cast<int>(all.size()); ++i)
+    if (std::string(system.group(all[static_cast<std::size_t>(i)].group).kind()) == Joint::kKind)
+      joints.push_back(i);
+  for (std::size_t k = 0; k < size(); ++k) {
+    const IndependentCoordinate& c = space_.coordinates()[k];
+    play_.push_back(0.0);
+    if (c.joint < 0) continue;
+    if (const Resistance* r = joint_at(system, joints.at(static_cast<std::size_t>(c.joint)))
+                                  .resistance()) {
+      // As at the start of a model.
+      const std::optional<JointLimits>& limits = c.turns ? r->data().turn : r->data().slide;
+      if (limits && limits->by_rows)
+        play_.back() = kOverlapGaps * system.touching_gap() / limits->radius;
+      else if (limits)
+        play_.back() = limits->law.tolerance;
+    }
+    if (!c.turns) continue;
+    const int interaction = joints.at(static_cast<std::size_t>(c.joint));
+    const Joint& joint = joint_at(system, interaction);
+    if (!joint.free_angle(c.coordinate)) continue;  // of a rotation vector
+    const std::vector<std::string> names = joint.coordinate_names();
+    Angle angle{.coordinate = k, .interaction = interaction};
+    for (; names[angle.value] != c.coordinate; ++angle.value)
+      if (joint.free_angle(names[angle.value])) ++angle.history;
+    angles_.push_back(angle);
+  }
+}
+
+JointSpace::Motions Coordinates::motions(const System& system, const State& state) const {
+  JointSpace::Motions motions = fixed_;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    if (body_[i] != kGround) motions[i] = system.motion(state, body_[i]);
+  return motions;
+}
+
+std::vector<double> Coordinates::positions(const System& system, const State& state,
+                                           const JointSpace::Motions& motions) const {
+  std::vector<double> near(size(), 0.0);
+  for (const Angle& angle : angles_) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(angle.interaction)];
+    const PairView view = system.instant(state, ref, state.lambda.data());
+    near[angle.coordinate] =
+        joint_at(system, angle.interaction).coordinates(view.step()).value[angle.value];
+  }
+  return space_.positions(motions, near);
+}
+
+void Coordinates::set_turns(const System& system, State& state,
+                            const std::vector<double>& positions) const {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  for (const Angle& angle : angles_) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(angle.interaction)];
+    double& counted =
+        state.history[static_cast<std::size_t>(ref.first_history + angle.history)];
+    counted += kTurn * std::round((positions[angle.coordinate] - counted) / kTurn);
+  }
+}
+
+}  // namespace polhode::python
