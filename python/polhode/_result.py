@@ -290,14 +290,17 @@ class Result(Differentiable):
         return array[:frames] if longer else array
 
     def _resolve(self, channel: str) -> "tuple[str, Any]":
-        """Path and array or group of "joints.A.force"."""
+        """Path and array or group of "joints.A.force"; names may have points, "joints.mast.start.force"."""
         path, found = "", None
-        for part in channel.split("."):
-            path += "/" + part
-            found = self._find(path)
-            if found is None:
-                raise KeyError(f"'{channel}' is not a channel: {path[1:].rpartition('/')[0] or 'the results'} "
-                               f"has no '{part}'")
+        parts = channel.split(".")
+        while parts:
+            for count in range(1, len(parts) + 1):
+                further = f"{path}/{'.'.join(parts[:count])}"
+                if (found := self._find(further)) is not None:
+                    break
+            else:
+                raise KeyError(f"'{channel}' is not a channel: {path[1:] or 'the results'} has no '{parts[0]}'")
+            path, parts = further, parts[count:]
         return path, found
 
     def __getitem__(self, channel: str) -> Any:

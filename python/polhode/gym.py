@@ -202,6 +202,8 @@ def _environments(
         raise ValueError("The model has automatic steps: give an action_period [s].")
     if not period > 0:
         raise ValueError("action_period must be positive")
+    if observation is None:
+        _ = first.q  # copies share what is made here
     # Copies share the functions of loads, and a function in Python is not to be called from two threads at once.
     own = bool(whole._calls()[1])
     others = [Simulation(whole, overrides, tau=first.driven) if own else first.copy() for _ in range(count - 1)]

@@ -40,6 +40,26 @@ std::vector<Driven> all_driven(const Model& model) {
   return list;
 }
 
+/// Those of some coordinates that can be independent together; none in a model without coordinates.
+std::vector<std::string> independent(const Model& model, const std::vector<std::string>& wanted) {
+  const auto fit = [&](const std::vector<std::string>& names) {
+    try {
+      (void)JointSpace(model, names);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  if (fit(wanted)) return wanted;
+  std::vector<std::string> chosen;
+  if (!fit(chosen)) return chosen;
+  for (const std::string& name : wanted) {
+    chosen.push_back(name);
+    if (!fit(chosen)) chosen.pop_back();
+  }
+  return chosen;
+}
+
 /// Adds motors whose moments or forces are held numbers.
 /// @param wanted  Names of coordinates; none: all independent ones along which a motor can act.
 /// @returns names of coordinates in the order of the numbers.
@@ -59,7 +79,7 @@ std::vector<std::string> add_held_loads(CompiledModel& compiled,
                          names.empty() ? "There is none" : "There are: " + name_list(names));
       chosen.push_back(all[static_cast<std::size_t>(found - names.begin())]);
     }
-    compiled.preferred = *wanted;
+    compiled.preferred = independent(model, *wanted);
   } else {
     const JointSpace space(model);
     for (const IndependentCoordinate& c : space.coordinates()) {

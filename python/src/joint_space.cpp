@@ -23,6 +23,7 @@ List numbers_of(const Input& given, const char* name, std::size_t columns, std::
     std::string shape;
     for (std::size_t k = 0; k < given.ndim(); ++k)
       shape += format("{}{}", k == 0 ? "" : ", ", given.shape(k));
+    if (given.ndim() == 1) shape += ",";
     throw nb::value_error(
         format("{} has the shape ({}), but there are {} coordinates", name, shape, columns).c_str());
   }

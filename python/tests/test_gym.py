@@ -114,6 +114,23 @@ def test_environments_side_by_side_have_the_numbers_of_single_ones(threads: int)
     assert resets > 3
 
 
+def test_loops_turn_side_by_side() -> None:
+    m = polhode.Model(gravity=[0, 0, -G], analysis={"duration": 10, "step": "2 ms"})
+    for name, x in (("crank", 0), ("coupler", 0.5), ("rocker", 1)):
+        m.add_body(name, mass=1, inertia=[0.01, 0.05, 0.05], position=[x, 0, 0.5 if name == "coupler" else 0.25])
+    ends = [("A", "ground", "crank", 0, 0), ("B", "crank", "coupler", 0, 0.5), ("C", "coupler", "rocker", 1, 0.5),
+            ("D", "rocker", "ground", 1.1, 0)]
+    for name, a, b, x, z in ends:
+        m.add_joint(name, "revolute", [a, b], at=[x, 0, z], axis="y")
+    many = polhode.gym.make_vec(m, 6, threads=3, actions=["A"], action_limit=20, reset=0.3)
+    single = polhode.gym.make(m, actions=["A"], action_limit=20, reset=0.3)
+    seen, other = many.reset(seed=5)[0], single.reset(seed=8)[0]
+    assert seen.shape == (6, 2)
+    for k in range(100):
+        seen, other = many.step(np.full((6, 1), 20 - k))[0], single.step(np.array([20.0 - k]))[0]
+        assert np.array_equal(seen[3], other)
+
+
 def test_functions_in_python_act_side_by_side() -> None:
     model = cart_pole()
     model.add_load("wind", "force", body="pole", at=[0, 0, 1], force=lambda t: [0.3 * np.sin(5 * t), 0, 0])

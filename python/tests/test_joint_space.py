@@ -259,6 +259,10 @@ def test_a_parallelogram_has_the_inertia_of_its_closed_form() -> None:
     assert sim.solve("rocker", sim.forward_kinematics([0.6])["rocker"].position) == pytest.approx([0.6], abs=1e-10)
     driven = polhode.Simulation(four_bar(), tau=["D"])
     assert driven.coordinates == ["D"] and driven.driven == ["D"]
+    both = polhode.Simulation(four_bar(), tau=["D", "A"])  # A depends on D; its motor acts all the same
+    assert both.coordinates == ["D"] and both.driven == ["D", "A"]
+    both.tau = [1.0, 2.0]
+    assert both.inverse_dynamics(both.qdd) == pytest.approx([-1.0], abs=1e-10)  # D turns against A
 
 
 def test_rows_of_times_are_those_one_by_one() -> None:
@@ -387,13 +391,18 @@ def test_tau_is_asked_for() -> None:
         with pytest.raises(ValueError, match="tau"):
             sim.tau = wrong
     sim.tau = 0.25
-    sim.step()
+    r = sim.run(0.01)
     assert sim.loads["tau.elbow"].moment == pytest.approx([0, 0.25, 0], abs=1e-12)
+    assert r["loads.tau.elbow.moment.y"] == pytest.approx(np.full(11, 0.25), abs=1e-12)
+    with pytest.raises(KeyError, match="loads/tau.elbow has no 'momnet'"):
+        _ = r["loads.tau.elbow.momnet"]
     for other in ([1.0], [[0.0, 0.0]], [0.0, math.inf]):
         with pytest.raises(ValueError, match="^q "):
             sim.q = other
-    with pytest.raises(ValueError, match="qdd has the shape"):
+    with pytest.raises(ValueError, match=r"qdd has the shape \(3,\), but there are 2 coordinates"):
         sim.inverse_dynamics([1.0, 2.0, 3.0])
+    with pytest.raises(ValueError, match=r"q has the shape \(5, 3\), but"):
+        sim.forward_kinematics(np.zeros((5, 3)))
     with pytest.raises(KeyError, match="Did you mean 'lower'"):
         sim.jacobian("lowr")
     with pytest.raises(ValueError, match="position, an orientation"):
