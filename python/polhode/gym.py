@@ -166,16 +166,20 @@ class VectorEnvironment(gymnasium.vector.VectorEnv[Any, Any, Any]):
         rewards = np.zeros(self.num_envs)
         terminated, truncated = np.zeros(self.num_envs, dtype=bool), np.zeros(self.num_envs, dtype=bool)
         rows = np.empty((self.num_envs, *(self.single_observation_space.shape or ())))
+        times: "list[float]" = [0.0] * self.num_envs
         infos: "dict[str, Any]" = {}
         for i in range(self.num_envs):
             if self._ended[i]:
                 rows[i], info = self.envs[i].reset()
-                infos = self._add_info(infos, info, i)
+                times[i] = info["time"]
         for k, i in enumerate(moving):
             env = self.envs[i]
             rows[i] = env._observe() if env._observation is not None else seen[k]
             rewards[i], terminated[i], truncated[i], info = env._after(actions[i], messages[k])
-            infos = self._add_info(infos, info, i)
+            times[i] = info.pop("time")
+            if info:
+                infos = self._add_info(infos, info, i)
+        infos.update({"time": np.array(times), "_time": np.ones(self.num_envs, dtype=bool)})
         self._ended = terminated | truncated
         return rows, rewards, terminated, truncated, infos
 
