@@ -12,7 +12,7 @@ import numpy as np
 
 import polhode
 
-ROUNDS, CALLS = 40, 500
+ROUNDS, CALLS = 200, 50
 LINKS = 7
 
 
@@ -54,7 +54,7 @@ def measure_polhode():
     plain, sim = polhode.Simulation(arm()), polhode.Simulation(arm(), tau=True)
     hold = sim.gravity_moments(q0)
     plain.reset(q0)
-    found = {"step, falling, no moments": fastest(plain.step, 100)}
+    found = {"step, falling, no moments": fastest(plain.step, 20)}
 
     def held():
         sim.tau = hold
@@ -67,7 +67,7 @@ def measure_polhode():
     sim.reset(q0)
     found["q, qd, tau and step, controlled"] = fastest(controlled)
     assert np.abs(sim.q - q0).max() < 1e-6, sim.q
-    found["tau and step, held"] = fastest(held, 100)  # later it falls from this unstable equilibrium
+    found["tau and step, held"] = fastest(held, 20)  # later it falls from this unstable equilibrium
     assert np.abs(sim.q - q0).max() < 0.2, sim.q
     target = sim.forward_kinematics(q0 + 0.1)[f"link{LINKS - 1}"]
     rows = np.tile(q0, (1000, 1))
@@ -75,7 +75,7 @@ def measure_polhode():
         "read q": fastest(lambda: sim.q),
         "read qd": fastest(lambda: sim.qd),
         "read seven joints one by one after a step": fastest(
-            lambda: (sim.step(), [sim.joints[f"j{i}"].coordinates for i in range(LINKS)]), 50),
+            lambda: (sim.step(), [sim.joints[f"j{i}"].coordinates for i in range(LINKS)]), 20),
         "qdd after a step": fastest(lambda: (sim.step(), sim.qdd)),
         "mass matrix": fastest(sim.mass_matrix),
         "inverse dynamics, present state": fastest(lambda: sim.inverse_dynamics(hold)),

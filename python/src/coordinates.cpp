@@ -10,6 +10,17 @@
 
 namespace polhode::python {
 
+namespace {
+
+/// The angle of a joint in a state, with the turns counted there.
+template <class SomeState, class Angle>
+auto& counted(const System& system, SomeState& state, const Angle& angle) {
+  const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(angle.interaction)];
+  return state.history[static_cast<std::size_t>(ref.first_history + angle.history)];
+}
+
+}  // namespace
+
 Coordinates::Coordinates(const Model& model, const System& system,
                          const std::vector<std::string>& preferred)
     : space_(model, preferred),
@@ -41,8 +52,8 @@ Coordinates::Coordinates(const Model& model, const System& system,
     if (!joint.free_angle(c.coordinate)) continue;  // of a rotation vector
     const std::vector<std::string> names = joint.coordinate_names();
     Angle angle{.coordinate = k, .interaction = interaction};
-    for (; names[angle.value] != c.coordinate; ++angle.value)
-      if (joint.free_angle(names[angle.value])) ++angle.history;
+    for (std::size_t i = 0; names[i] != c.coordinate; ++i)
+      if (joint.free_angle(names[i])) ++angle.history;
     angles_.push_back(angle);
   }
 }
@@ -57,12 +68,8 @@ JointSpace::Motions Coordinates::motions(const System& system, const State& stat
 std::vector<double> Coordinates::positions(const System& system, const State& state,
                                            const JointSpace::Motions& motions) const {
   std::vector<double> near(size(), 0.0);
-  for (const Angle& angle : angles_) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(angle.interaction)];
-    const PairView view = system.instant(state, ref, state.lambda.data());
-    near[angle.coordinate] =
-        joint_at(system, angle.interaction).coordinates(view.step()).value[angle.value];
-  }
+  // Turns that were counted some steps ago: joints count them again before half of one has passed.
+  for (const Angle& angle : angles_) near[angle.coordinate] = counted(system, state, angle);
   return space_.positions(motions, near);
 }
 
@@ -70,10 +77,8 @@ void Coordinates::set_turns(const System& system, State& state,
                             const std::vector<double>& positions) const {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   for (const Angle& angle : angles_) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(angle.interaction)];
-    double& counted =
-        state.history[static_cast<std::size_t>(ref.first_history + angle.history)];
-    counted += kTurn * std::round((positions[angle.coordinate] - counted) / kTurn);
+    double& angle_there = counted(system, state, angle);
+    angle_there += kTurn * std::round((positions[angle.coordinate] - angle_there) / kTurn);
   }
 }
 

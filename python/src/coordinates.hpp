@@ -35,7 +35,6 @@ class Coordinates {
   struct Angle {
     std::size_t coordinate = 0;
     int interaction = 0;
-    std::size_t value = 0;  ///< Index in the coordinates of the joint.
     int history = 0;        ///< Into the history of the joint.
   };
 

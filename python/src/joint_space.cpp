@@ -171,8 +171,9 @@ Array inverse_dynamics(Engine& engine, const Input& second, const std::optional<
     return list;
   };
   const List a = take(second, "qdd");
-  const List x = q ? take(*q, "q") : at.positions();
-  const List v = qd ? take(*qd, "qd") : at.space().rates(at.motions);
+  const bool stays = !q && !qd;
+  const List x = q ? take(*q, "q") : stays ? List(n) : at.positions();
+  const List v = qd ? take(*qd, "qd") : stays ? List(n) : at.space().rates(at.motions);
   const auto row = [&](const List& list, std::size_t i) {
     return std::span(list).subspan(list.size() > n ? i * n : 0, n);
   };
@@ -180,7 +181,7 @@ Array inverse_dynamics(Engine& engine, const Input& second, const std::optional<
   {
     const nb::gil_scoped_release unlocked;
     for (std::size_t i = 0; i < rows; ++i) {
-      if ((q || qd) && (i == 0 || x.size() > n || v.size() > n))
+      if (!stays && (i == 0 || x.size() > n || v.size() > n))
         at.motions = at.space().place(at.motions, row(x, i), row(v, i));
       const List one = at.space().inverse_dynamics(at.motions, row(a, i));
       forces.insert(forces.end(), one.begin(), one.end());

@@ -197,6 +197,11 @@ def test_turns_are_counted_and_set() -> None:
         sim.q[1] % math.tau, abs=1e-12)
     sim.restore(state)
     assert sim.q == pytest.approx([7, -20], abs=1e-13)
+    sim.reset(qd=[30.0, -70.0])
+    for _ in range(300):  # joints count turns now and then
+        sim.step()
+        assert sim.q == pytest.approx([sim.joints[name].coordinates[0] for name in sim.coordinates], abs=1e-12)
+    assert np.abs(sim.q).max() > 6
 
 
 @pytest.mark.parametrize("make", [arm, mixed, four_bar])
