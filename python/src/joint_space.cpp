@@ -43,7 +43,7 @@ Array row_of(List numbers) {
 class Evaluation {
  public:
   explicit Evaluation(Engine& engine)
-      : engine_(engine), of_(engine.coordinates()), use_(engine), motions(engine.motions()) {}
+      : of_(engine.coordinates()), use_(engine), motions(engine.motions()) {}
 
   [[nodiscard]] const JointSpace& space() const { return of_.space(); }
   [[nodiscard]] std::size_t size() const { return of_.size(); }
@@ -59,7 +59,6 @@ class Evaluation {
   }
 
  private:
-  Engine& engine_;
   const Coordinates& of_;
   Engine::Use use_;
 

@@ -45,6 +45,7 @@ class Search {
     PoseReached at = place(start, from_);
     VectorXd e = error(at);
     double damping = kFirstDamping;
+    if (at.positions.empty()) return at;
     for (int i = 0; i < kMaxSteps && !at.reached && damping < kMostDamping; ++i) {
       const MatrixXd J = jacobian(at);
       const VectorXd q = vector_of(at.positions), d = step(J, e, q, damping);
