@@ -260,6 +260,29 @@ TEST(JointSpace, NamesTheJointOfALoopThatCannotBeClosed) {
   }
 }
 
+/// The engine's mass of the inerter accelerates along the joint.
+TEST(JointSpace, HasTheAccelerationsOfTheEngineWithInerters) {
+  Model model = DoublePendulum::model();
+  LoadSpec rotor;
+  rotor.name = "rotor";
+  rotor.type = "rotary_inerter";
+  rotor.joint = "elbow";
+  rotor.parameters["inertance"] = 2.0;
+  model.loads.push_back(rotor);
+  model.bodies[0].angular_velocity = {0, 0, 3};
+  model.bodies[0].velocity = {0, 1.2, 0};
+  model.bodies[1].velocity = {0, 3, 0};
+  Simulation simulation(model);
+  simulation.run();
+  const Seen seen(simulation);
+  const JointSpace space(simulation.model());
+  const Numbers second = space.second_rates(seen.motions, seen.linear, seen.angular);
+  EXPECT_NEAR(second[0], seen.angular[0].z(), 1e-9);
+  EXPECT_NEAR(second[1], seen.angular[1].z() - seen.angular[0].z(), 1e-9);
+  for (const double force : space.inverse_dynamics(seen.motions, second))
+    EXPECT_NEAR(force, 0.0, 1e-8);
+}
+
 /// Two wheels: J is that of the first with the second's by the square of the ratio.
 TEST(JointSpace, ProjectsOntoCouplingsAndInerters) {
   const Model model = model_of(

@@ -155,6 +155,25 @@ TEST(Trust, ManyIterationsInTheImpactOfAStopAreNoFailure) {
   }
 }
 
+// A joint at any angle, whose gap of rounding is closed by velocities of rounding; and the same
+// joint in slow motion, whose balance is judged all the same.
+TEST(Trust, ABodyAtRestInAJointIsTrusted) {
+  for (const double angle : {0.3, 1.0, 200.0 * 3.14159265358979 / 180.0, 4.0, 5.5})
+    for (const char* step : {"10 ms", "1 ms", "0.01 ms"})
+      for (const double speed : {0.0, 1e-4}) {
+        const RunSummary r = run(
+            "format: 1\nbodies: {a: {mass: 1, inertia: [0.02, 0.03, 0.02], orientation: {axis: z, "
+            "angle: " +
+                std::to_string(angle) + " rad}}}\n" +
+                "joints: {A: {type: revolute, bodies: [ground, a], at_body: [[0, 0, 0], [-0.5, 0, "
+                "0]], axis_body: [z, z], x_axis_body: [x, x], start_rate: " +
+                std::to_string(speed) + "}}\nanalysis: {duration: 10 ms, step: 1 ms}\n",
+            {std::string("analysis.step=") + step});
+        EXPECT_TRUE(r.trusted()) << angle << ' ' << step << ' ' << speed << r.distrust.front();
+        EXPECT_LT(r.energy_drift, 1e-6);
+      }
+}
+
 // A bar on a hub that turns steadily: the hub's centre is at rest, its rim and the bar are not.
 constexpr const char* kHub = R"(
 format: 1

@@ -89,16 +89,8 @@ void FreeMotion::read(const RelativePose& pose, double* q) const {
   }
 }
 
-void FreeMotion::advance(double* q, const double* change) const {
-  const std::size_t slides = slides_.size();
-  if (turns_.size() < 3) {
-    for (int k = 0; k < size(); ++k) q[k] += change[k];
-    return;
-  }
-  for (std::size_t k = 0; k < slides; ++k) q[k] += change[k];
-  const Eigen::Map<const Vec3> turn(change + slides);
-  Eigen::Map<Vec3> chi(q + slides);
-  chi = log_map(exp_map(turn) * exp_map(chi));
+Mat3 FreeMotion::spin(const double* q) const {
+  return spin_by_rate(Eigen::Map<const Vec3>(q + slides_.size()));
 }
 
 void FreeMotion::directions(const PlacedFrames& at, const double* q, MotionVector* s) const {

@@ -57,8 +57,10 @@ class FreeMotion {
   [[nodiscard]] RelativePose pose(const double* q) const;
   /// Coordinates of a pose; angles between −π and π.
   void read(const RelativePose& pose, double* q) const;
-  /// Adds small changes, in terms of which the motion vectors are, to coordinates.
-  void advance(double* q, const double* change) const;
+  /// Whether its rates are those of a rotation vector's angular velocity, see spin().
+  [[nodiscard]] bool has_spin() const { return turns_.size() == 3; }
+  /// Rates of its last three coordinates by the changes of the rotation vector.
+  [[nodiscard]] Mat3 spin(const double* q) const;
   /// Motion vectors by coordinate.
   void directions(const PlacedFrames& at, const double* q, MotionVector* s) const;
   /// Their rates of change as the bodies move. @param of_a, of_b  Motions of both bodies.

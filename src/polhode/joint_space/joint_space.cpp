@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <polhode/core/error.hpp>
@@ -19,13 +21,19 @@ using Motions = JointSpace::Motions;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Singular values of rows below this part of the largest one belong to redundant rows [-].
+/// Parts of rows below this one of their largest terms are rounding of redundant rows [-].
 constexpr double kRedundant = 1e-9;
-/// Rows that hold to this part of the mechanism's size hold [-].
+/// Rows hold if their values are below this part of their terms, and no iteration improves them.
 constexpr double kClosed = 1e-13;
-/// Largest change of a coordinate while a loop is followed, and the shortest part of it [rad, -].
-constexpr double kLargestPart = 0.25, kShortestPart = 0x1p-12;
-constexpr int kMaxIterations = 20;
+/// Largest change of a coordinate while a loop is followed [rad, or of the mechanism's size], and
+/// the smallest one of the given coordinates.
+constexpr double kLargestPart = 0.25, kSmallestPart = 1e-7;
+/// Largest correction of a predicted change of the coordinates, over that change [-].
+constexpr double kCorrection = 0.5;
+/// A column whose part is this much smaller than the largest one is a poor choice [-].
+constexpr double kPoor = 1e-2;
+/// Iterations from a position that was predicted, and from the one described.
+constexpr int kMaxIterations = 20, kFirstIterations = 100;
 
 std::vector<double> list_of(const VectorXd& x) { return {x.begin(), x.end()}; }
 VectorXd vector_of(std::span<const double> x) {
@@ -98,7 +106,7 @@ struct JointSpace::Impl {
       m.v = body.velocity;
       m.W = m.q.conjugate() * body.angular_velocity;
       start.push_back(m);
-      // As in the compiled system: it takes no part in the motion, but keeps M regular.
+      // an inertia without effect on the motion, which keeps M regular
       if (body.point_mass) body.inertia = body.mass * Mat3::Identity();
     }
     for (const LoadSpec& load : model.loads) add_inertance(load);
@@ -120,36 +128,57 @@ struct JointSpace::Impl {
         return;
       }
     }
-    throw InputError(format("loads.{}", load.name),
-                     "acts in a joint that closes a loop, where it has no coordinate",
-                     "Name that joint before others of the loop");
+    unplaced_inerter.emplace(format("loads.{}", load.name),
+                             "acts in a joint that closes a loop, where it has no coordinate",
+                             "Name that joint before others of the loop");
   }
 
-  /// Chooses the independent coordinates, so that rows determine the others.
+  /// Whether a coordinate has a name that is given; joints come before free bodies.
+  [[nodiscard]] bool is_named(const IndependentCoordinate& c, const std::string& name) const {
+    if (c.name != name) return false;
+    return c.joint >= 0 || !is_of_joint(name);
+  }
+  [[nodiscard]] bool is_of_joint(const std::string& name) const {
+    return std::ranges::find(tree.closing(), name) != tree.closing().end() ||
+           std::ranges::any_of(tree.coordinates(), [&](const IndependentCoordinate& c) {
+             return c.joint >= 0 && c.name == name;
+           });
+  }
+
+  /// Chooses the independent coordinates, so that rows determine the others: first those of free
+  /// bodies, then of joints, and those that are preferred last.
   void choose(std::span<const std::string> preferred) {
     const int n = tree.size();
-    std::vector<int> order;  // the most wanted last
-    for (int k = n - 1; k >= 0; --k) order.push_back(k);
-    const auto is_preferred = [&](int k) {
-      const std::string& name = tree.coordinates()[static_cast<std::size_t>(k)].name;
-      return std::ranges::find(preferred, name) != preferred.end();
-    };
-    std::ranges::stable_sort(order,
-                             [&](int x, int y) { return !is_preferred(x) && is_preferred(y); });
+    std::array<std::vector<int>, 3> classes;
+    for (int k = 0; k < n; ++k) {
+      const IndependentCoordinate& c = tree.coordinates()[static_cast<std::size_t>(k)];
+      const bool is_preferred = std::ranges::any_of(
+          preferred, [&](const std::string& name) { return is_named(c, name); });
+      classes[is_preferred ? 2 : c.joint >= 0 ? 1 : 0].push_back(k);
+    }
     std::vector<char> dependent(static_cast<std::size_t>(n), 0);
     if (rows) {
       history = rows->first_history();
-      MatrixXd left = rows->at(start, tree.sweep(start), history).G;
-      const double largest = left.cwiseAbs().maxCoeff();
-      for (int k : order) {
-        Eigen::Index pivot = 0;
-        const double size = left.col(k).cwiseAbs().maxCoeff(&pivot);
-        if (!(size > 1e-7 * largest)) continue;
-        dependent[static_cast<std::size_t>(k)] = 1;
-        const Eigen::RowVectorXd row = left.row(pivot) / left(pivot, k);
-        left -= left.col(k) * row;
-        left.row(pivot).setZero();
-      }
+      const LoopRows::Values v = rows->at(start, tree.sweep(start), history);
+      MatrixXd left = v.G;
+      const double rounding = kRedundant * v.scale;
+      for (std::size_t of = 0; of < classes.size(); ++of)
+        for (;;) {
+          double largest = 0.0;
+          for (int k : classes[of]) largest = std::max(largest, left.col(k).cwiseAbs().maxCoeff());
+          if (!(largest > rounding)) break;
+          const double least = of == 0 ? largest : kPoor * largest;
+          const int k = *std::find_if(classes[of].rbegin(), classes[of].rend(), [&](int x) {
+            return left.col(x).cwiseAbs().maxCoeff() >= least;
+          });
+          Eigen::Index pivot = 0;
+          left.col(k).cwiseAbs().maxCoeff(&pivot);
+          dependent[static_cast<std::size_t>(k)] = 1;
+          const Eigen::RowVectorXd row = left.row(pivot) / left(pivot, k);
+          left -= left.col(k) * row;
+          left.row(pivot).setZero();
+          left.col(k).setZero();
+        }
     }
     for (int k = 0; k < n; ++k) {
       (dependent[static_cast<std::size_t>(k)] != 0 ? dependents : independents).push_back(k);
@@ -157,16 +186,22 @@ struct JointSpace::Impl {
         coordinates.push_back(tree.coordinates()[static_cast<std::size_t>(k)]);
     }
     for (const std::string& name : preferred) {
+      if (std::ranges::any_of(coordinates,
+                              [&](const IndependentCoordinate& c) { return is_named(c, name); }))
+        continue;
+      const bool known =
+          is_of_joint(name) ||
+          std::ranges::any_of(tree.coordinates(),
+                              [&](const IndependentCoordinate& c) { return c.name == name; });
       std::vector<std::string> names;
       for (const IndependentCoordinate& c : coordinates) names.push_back(c.name);
-      if (std::ranges::find(names, name) != names.end()) continue;
-      const auto is_it = [&](const IndependentCoordinate& c) { return c.name == name; };
-      const bool known = std::ranges::any_of(tree.coordinates(), is_it) ||
-                         std::ranges::find(tree.closing(), name) != tree.closing().end();
       throw InputError(name,
-                       known ? "depends on other coordinates, which are given"
+                       known ? "follows from the other coordinates of its loop at the position "
+                               "described, and cannot lead"
                              : "is not a coordinate of a joint or free body",
-                       known ? "Leave one of them out" : "There are: " + name_list(names));
+                       known ? "Leave it or another one out, or describe a position away from dead "
+                               "centres"
+                             : "There are: " + name_list(names));
     }
   }
 
@@ -177,20 +212,33 @@ struct JointSpace::Impl {
     MatrixXd N = MatrixXd::Zero(tree.size(), static_cast<Eigen::Index>(independents.size()));
     for (std::size_t i = 0; i < independents.size(); ++i)
       N(independents[i], static_cast<Eigen::Index>(i)) = 1.0;
-    const MatrixXd follow = dependent_part(v.G).solve(-v.G(Eigen::all, independents));
+    if (independents.empty() || dependents.empty()) return N;
+    const MatrixXd follow = dependent_part(v).solve(-v.G(Eigen::all, independents));
     for (std::size_t i = 0; i < dependents.size(); ++i)
       N.row(dependents[i]) = follow.row(static_cast<Eigen::Index>(i));
     return N;
   }
+  /// All coordinates, or their rates, that solve G x = b with independent ones of zero.
+  [[nodiscard]] VectorXd solve_dependent(const LoopRows::Values& v, const VectorXd& b) const {
+    VectorXd all = VectorXd::Zero(tree.size());
+    if (dependents.empty()) return all;
+    const VectorXd follow = dependent_part(v).solve(b);
+    for (std::size_t i = 0; i < dependents.size(); ++i)
+      all[dependents[i]] = follow[static_cast<Eigen::Index>(i)];
+    return all;
+  }
   [[nodiscard]] Eigen::CompleteOrthogonalDecomposition<MatrixXd> dependent_part(
-      const MatrixXd& G) const {
+      const LoopRows::Values& v) const {
+    const MatrixXd G = v.G(Eigen::all, dependents);
+    const double largest = G.colwise().norm().maxCoeff();
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> part;
-    part.setThreshold(kRedundant);
-    part.compute(G(Eigen::all, dependents));
+    part.setThreshold(largest > 0.0 ? kRedundant * std::max(1.0, v.scale / largest) : kRedundant);
+    part.compute(G);
     return part;
   }
 
   [[nodiscard]] MatrixXd tree_mass(const Motions& motions, const TreeSpace::Sweep& sweep) const {
+    if (unplaced_inerter) throw InputError(*unplaced_inerter);
     std::vector<Mat6> carried(motions.size());
     for (std::size_t i = 0; i < motions.size(); ++i)
       carried[i] = mass_of(model.bodies[i], motions[i]);
@@ -219,16 +267,17 @@ struct JointSpace::Impl {
     return M;
   }
 
-  /// Everything that depends on the position, and the equations in the independent coordinates.
+  /// Everything that depends on the position alone.
   struct Position {
     TreeSpace::Sweep sweep;
     LoopRows::Values loop;
-    MatrixXd N;  ///< Empty without loops.
-    MatrixXd M;  ///< Of the tree.
+    MatrixXd N;            ///< Empty without loops.
+    MatrixXd M;            ///< Of the tree.
+    bool inerters = true;  ///< M contains them.
   };
   /// @param inerters  Whether M contains them.
   [[nodiscard]] Position position(const Motions& motions, bool inerters = true) const {
-    Position p{.sweep = tree.sweep(motions), .loop = {}, .N = {}, .M = {}};
+    Position p{.sweep = tree.sweep(motions), .loop = {}, .N = {}, .M = {}, .inerters = inerters};
     if (rows) {
       p.loop = rows->at(motions, p.sweep, history);
       p.N = transmission(p.loop);
@@ -246,22 +295,20 @@ struct JointSpace::Impl {
   }
 
   [[nodiscard]] VectorXd rates(const Position& p, const Motions& motions) const {
+    if (independents.empty()) return VectorXd(0);
     std::vector<Vec6> momenta(motions.size(), Vec6::Zero());
     for (std::size_t i = 0; i < motions.size(); ++i)
       if (!model.bodies[i].fixed) momenta[i] = momentum_of(model.bodies[i], motions[i]);
     VectorXd momentum = tree.project(p.sweep, std::move(momenta));
-    for (const Inertance& i : inertances)  // as far as they follow the joint
+    if (!p.inerters) return mass(p).ldlt().solve(onto(p, momentum));
+    for (const Inertance& i : inertances)
       momentum[i.coordinate] += i.value * tree.rate(motions, p.sweep, i.coordinate);
     return mass(p).ldlt().solve(onto(p, momentum));
   }
 
   /// Second derivatives of all coordinates at constant rates of the independent ones.
   [[nodiscard]] VectorXd drift(const Position& p, const LoopRows::Values& moving) const {
-    VectorXd n = VectorXd::Zero(tree.size());
-    const VectorXd follow = dependent_part(p.loop.G).solve(-moving.gamma);
-    for (std::size_t i = 0; i < dependents.size(); ++i)
-      n[dependents[i]] = follow[static_cast<Eigen::Index>(i)];
-    return n;
+    return solve_dependent(p.loop, -moving.gamma);
   }
 
   /// Motions with the velocities of given rates, and the sweep that belongs to them.
@@ -305,55 +352,69 @@ struct JointSpace::Impl {
 
   /// Brings the dependent coordinates onto the rows. @returns whether they hold.
   [[nodiscard]] bool close(VectorXd& q, Motions& motions, const LoopRows::History& turns,
-                           double size) const {
+                           double size, int iterations) const {
     double before = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < kMaxIterations; ++i) {
+    for (int i = 0; i < iterations; ++i) {
       tree.place(q, motions);
-      const LoopRows::Values v = rows->at(motions, tree.sweep(motions), turns);
+      LoopRows::Values v = rows->at(motions, tree.sweep(motions), turns);
       const double g = v.g.cwiseAbs().maxCoeff();
       if (!std::isfinite(g)) return false;
-      if (g <= kClosed * size && (g == 0.0 || g > 0.5 * before)) return true;
-      const VectorXd change = dependent_part(v.G).solve(-v.g);
-      if (change.cwiseAbs().maxCoeff() > 4.0 * kLargestPart * std::max(1.0, size)) return false;
-      VectorXd all = VectorXd::Zero(tree.size());
-      for (std::size_t k = 0; k < dependents.size(); ++k)
-        all[dependents[k]] = change[static_cast<Eigen::Index>(k)];
-      tree.advance(q, all);
+      double reach = size;
+      for (const BodyMotion& m : motions) reach = std::max(reach, m.r.norm());
+      const bool small = g <= kClosed * (reach + v.scale * q.cwiseAbs().maxCoeff());
+      if (small && (g == 0.0 || g > 0.5 * before)) return true;
+      if (dependents.empty()) return small;
+      tree.by_coordinates(q, v.G);
+      VectorXd change = solve_dependent(v, -v.g);
+      const double part = tree.size_of(change, size);
+      if (part > kLargestPart) change *= kLargestPart / part;
+      q += change;
       before = g;
     }
     return false;
   }
 
+  /// Follows the rows from a position to given independent coordinates, along their tangent: the
+  /// branch of a loop is kept where others cross it.
   [[nodiscard]] Motions place(const Motions& from, const VectorXd& wanted) const {
     Motions motions = from;
-    VectorXd q = all_of(from);
     if (!rows) {
       tree.place(wanted, motions);
       return motions;
     }
     double size = 0.0;
     for (const BodyMotion& m : from) size = std::max(size, (m.r - from.front().r).norm());
-    size = std::max(size, 1e-3);
+    if (size == 0.0) size = 1.0;
+    VectorXd q = all_of(from);
     const VectorXd first = q(independents);
     LoopRows::History turns = &from == &start ? history : rows->history_at(from, tree.sweep(from));
+    if (!close(q, motions, turns, size, kFirstIterations))
+      refuse_open(rows->at(motions, tree.sweep(motions), turns));
     double done = 0.0, part = 1.0;
-    const double most = (wanted - first).cwiseAbs().maxCoeff();
-    part = std::min(1.0, kLargestPart / std::max(most, kLargestPart));
     while (done < 1.0) {
-      const double next = std::min(1.0, done + part);
-      VectorXd trial = q;
+      LoopRows::Values v = rows->at(motions, tree.sweep(motions), turns);
+      tree.by_coordinates(q, v.G);
+      const VectorXd way = transmission(v) * (wanted - first);
+      const double length = tree.size_of(way, size);
+      const double next = std::min(1.0, done + std::min(part, kLargestPart / length));
+      VectorXd trial = q + (next - done) * way;
       trial(independents) = next < 1.0 ? VectorXd(first + next * (wanted - first)) : wanted;
+      const VectorXd predicted = trial;
       Motions there = motions;
-      if (close(trial, there, turns, size)) {
+      if (close(trial, there, turns, size, kMaxIterations) &&
+          tree.size_of(trial - predicted, size) <= kCorrection * (next - done) * length + kClosed) {
         q = trial;
-        motions = there;
+        motions = std::move(there);
         rows->follow(motions, turns);
+        part = 2.0 * (next - done);
         done = next;
         continue;
       }
-      part *= 0.5;
-      if (part < kShortestPart) {
-        tree.place(trial, there);
+      part = 0.5 * (next - done);
+      VectorXd given = VectorXd::Zero(tree.size());
+      given(independents) = part * (wanted - first);
+      if (tree.size_of(given, size) < kSmallestPart) {
+        tree.place(predicted, there);
         refuse_open(rows->at(there, tree.sweep(there), turns));
       }
     }
@@ -368,6 +429,7 @@ struct JointSpace::Impl {
   std::vector<int> independents, dependents;  ///< Coordinates of the tree.
   std::vector<IndependentCoordinate> coordinates;
   std::vector<Inertance> inertances;
+  std::optional<InputError> unplaced_inerter;  ///< Refusal of equations with it.
 };
 
 JointSpace::JointSpace(const Model& model, std::span<const std::string> preferred)

@@ -23,6 +23,7 @@ Model with_rows_alone(const Model& model) {
     joint.limits.reset();
     joint.angle_limits.reset();
     joint.breaks = {};
+    joint.enforcement.reset();
     bare.joints.push_back(std::move(joint));
   }
   for (const LoadSpec& load : model.loads) {
@@ -124,8 +125,10 @@ LoopRows::Values LoopRows::at(const JointSpace::Motions& motions, const TreeSpac
       if (body == kGround) continue;
       const int of = model_body_[static_cast<std::size_t>(body)];
       const BodyMotion& m = motions[static_cast<std::size_t>(of)];
-      v.G.middleRows(source.first_row, ref.rows) +=
-          G->topRows(ref.rows) * tree_.jacobian(sweep, of, m.r);
+      const Eigen::MatrixXd J = tree_.jacobian(sweep, of, m.r);
+      v.G.middleRows(source.first_row, ref.rows) += G->topRows(ref.rows) * J;
+      if (J.size() > 0)
+        v.scale = std::max(v.scale, (G->topRows(ref.rows).cwiseAbs() * J.cwiseAbs()).maxCoeff());
       if (sweep.acceleration.empty()) continue;
       const MotionVector& by = sweep.acceleration[static_cast<std::size_t>(of)];
       const Vec3 omega = sweep.twist[static_cast<std::size_t>(of)].angular;

@@ -13,6 +13,7 @@ namespace polhode {
 /// loads with rows that no time prescribes.
 class LoopRows {
  public:
+  /// Rows of a model; joints that a stiffness enforces count as exact.
   LoopRows(const Model& model, const TreeSpace& tree);
 
   [[nodiscard]] int size() const { return rows_; }
@@ -22,6 +23,7 @@ class LoopRows {
     Eigen::MatrixXd G;      ///< rows × coordinates, by their rates.
     Eigen::VectorXd g;      ///< Constraint values [m or -].
     Eigen::VectorXd gamma;  ///< G q̈ + γ = 0, with the motion at constant rates in it.
+    double scale = 0.0;     ///< Largest term of an entry of G, of those that may cancel.
   };
   /// Counted turns and the like, as of a position.
   struct History {
@@ -35,10 +37,10 @@ class LoopRows {
   /// turns led to it.
   [[nodiscard]] History history_at(const JointSpace::Motions& motions,
                                    const TreeSpace::Sweep& sweep) const;
-  /// @param sweep  Of these motions; with velocities if γ is wanted.
+  /// Rows at a position. @param sweep  Of these motions; with velocities if γ is wanted.
   [[nodiscard]] Values at(const JointSpace::Motions& motions, const TreeSpace::Sweep& sweep,
                           const History& history) const;
-  /// Goes on to the turns of a position.
+  /// Update of the counted turns, to those of a position nearby.
   void follow(const JointSpace::Motions& motions, History& history) const;
   /// The object of a row, for messages: "joint 'C'".
   [[nodiscard]] std::string name_of(int row) const;

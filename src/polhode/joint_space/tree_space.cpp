@@ -8,17 +8,20 @@
 #include <polhode/joint_space/tree_space.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
 
 namespace polhode {
 
 namespace {
 
+/// Largest number of coordinates of a joint.
+constexpr std::size_t kMostFree = 6;
 constexpr const char* kAxes[6] = {"x", "y", "z", "rx", "ry", "rz"};
 
 /// A joint of the model that can lead to a body, with the names of its coordinates.
 struct Candidate {
   int joint = -1;
-  bool wanted = false;
+  int wish = 2;  ///< 0: has a coordinate that is to be independent, 1: has an inerter.
   std::vector<std::string> names;
   bool equal_turns = false;
 };
@@ -38,13 +41,20 @@ std::vector<Candidate> candidates(const Model& model, std::span<const std::strin
                                  {.free = joint.free, .values = joint.parameters}));
     Candidate c{.joint = static_cast<int>(i), .names = item.coordinate_names()};
     c.equal_turns = item.parts().equal_turns;
+    if (std::ranges::any_of(model.loads, [&](const LoadSpec& load) {
+          return load.solid < 0 && load.joint == joint.name && load_kind(load.type).parts > 1;
+        }))
+      c.wish = 1;
     for (const std::string& name : c.names)
-      c.wanted |= std::ranges::find(preferred, name_of(joint.name, name, c.names.size())) !=
-                  preferred.end();
+      if (std::ranges::find(preferred, name_of(joint.name, name, c.names.size())) !=
+          preferred.end())
+        c.wish = 0;
     list.push_back(std::move(c));
   }
-  std::ranges::stable_sort(
-      list, [](const Candidate& a, const Candidate& b) { return a.wanted && !b.wanted; });
+  // Joints with few coordinates first, so that those with many close the loops.
+  std::ranges::stable_sort(list, [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.wish, a.names.size()) < std::pair(b.wish, b.names.size());
+  });
   return list;
 }
 
@@ -179,13 +189,17 @@ Eigen::VectorXd TreeSpace::read(const Motions& motions, std::span<const double> 
 void TreeSpace::place(const Eigen::VectorXd& q, Motions& motions) const {
   for (const TreeJoint& joint : joints_) {
     const RelativePose pose = joint.free.pose(q.data() + joint.first);
-    BodyMotion ground;
+    const BodyMotion ground;
     BodyMotion& child = motions[static_cast<std::size_t>(joint.child())];
     const BodyMotion& parent =
         joint.parent() == kGround ? ground : motions[static_cast<std::size_t>(joint.parent())];
     const Mat3 parent_axes = parent.Lambda();
+    const Quat kept = child.q;
     child = BodyMotion();
-    if (joint.from_a) {
+    if (joint.is_free_point()) {
+      child.q = kept;
+      child.r = pose.d;
+    } else if (joint.from_a) {
       const Mat3 R_a = parent_axes * joint.R_a;
       const Mat3 Lambda = R_a * pose.R * joint.R_b.transpose();
       child.q = Quat(Lambda).normalized();
@@ -199,9 +213,20 @@ void TreeSpace::place(const Eigen::VectorXd& q, Motions& motions) const {
   }
 }
 
-void TreeSpace::advance(Eigen::VectorXd& q, const Eigen::VectorXd& change) const {
+void TreeSpace::by_coordinates(const Eigen::VectorXd& q, Eigen::MatrixXd& G) const {
   for (const TreeJoint& joint : joints_)
-    joint.free.advance(q.data() + joint.first, change.data() + joint.first);
+    if (joint.free.has_spin()) {
+      const int last = joint.first + joint.free.size() - 3;
+      G.middleCols(last, 3) *= joint.free.spin(q.data() + joint.first);
+    }
+}
+
+double TreeSpace::size_of(const Eigen::VectorXd& change, double length) const {
+  double size = 0.0;
+  for (int k = 0; k < this->size(); ++k)
+    size = std::max(
+        size, std::abs(change[k]) / (names_[static_cast<std::size_t>(k)].turns ? 1.0 : length));
+  return size;
 }
 
 TreeSpace::Sweep TreeSpace::sweep(const Motions& motions) const {
@@ -218,7 +243,7 @@ TreeSpace::Sweep TreeSpace::sweep(const Motions& motions) const {
 
 TreeSpace::Sweep TreeSpace::sweep(const Motions& motions, const Eigen::VectorXd& rates) const {
   Sweep sweep = this->sweep(motions);
-  sweep.s_dot.resize(names_.size());
+  std::vector<MotionVector> s_dot(kMostFree);
   sweep.twist.resize(motions.size());
   sweep.acceleration.resize(motions.size());
   const Eigen::VectorXd q = read(motions, {});
@@ -232,14 +257,12 @@ TreeSpace::Sweep TreeSpace::sweep(const Motions& motions, const Eigen::VectorXd&
     MotionVector of_child = of_parent;
     for (int k = 0; k < joint.free.size(); ++k)
       of_child += rates[joint.first + k] * sweep.s[static_cast<std::size_t>(joint.first + k)];
-    MotionVector* s_dot = sweep.s_dot.data() + joint.first;
     joint.free.direction_rates(frames(joint, motions), q.data() + joint.first,
                                rates.data() + joint.first, joint.from_a ? of_parent : of_child,
-                               joint.from_a ? of_child : of_parent, s_dot);
-    for (int k = 0; k < joint.free.size(); ++k) {
-      if (!joint.from_a) s_dot[k] = -1.0 * s_dot[k];
-      acceleration += rates[joint.first + k] * s_dot[k];
-    }
+                               joint.from_a ? of_child : of_parent, s_dot.data());
+    for (int k = 0; k < joint.free.size(); ++k)
+      acceleration +=
+          (joint.from_a ? 1.0 : -1.0) * rates[joint.first + k] * s_dot[static_cast<std::size_t>(k)];
     sweep.twist[child] = of_child;
     sweep.acceleration[child] = acceleration;
   }

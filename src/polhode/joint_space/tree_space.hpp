@@ -21,6 +21,8 @@ struct TreeJoint {
   FreeMotion free;
   int first = 0;  ///< Of its coordinates in those of the tree.
 
+  /// Whether it is the free motion of a point mass, whose orientation does not change.
+  [[nodiscard]] bool is_free_point() const { return joint < 0 && free.size() == 3; }
   [[nodiscard]] int child() const { return from_a ? b : a; }
   [[nodiscard]] int parent() const { return from_a ? a : b; }
 };
@@ -38,7 +40,7 @@ class TreeSpace {
   [[nodiscard]] const std::vector<TreeJoint>& joints() const { return joints_; }
   /// Whether a joint of the model is part of the tree.
   [[nodiscard]] bool has(int joint) const { return in_tree_[static_cast<std::size_t>(joint)] != 0; }
-  /// Names of the coordinates of joints that close loops.
+  /// The names that coordinates of joints that close loops would have.
   [[nodiscard]] const std::vector<std::string>& closing() const { return closing_; }
   /// Joint of the tree that leads to a body; -1 for a fixed one.
   [[nodiscard]] int joint_to(int body) const { return to_[static_cast<std::size_t>(body)]; }
@@ -47,13 +49,14 @@ class TreeSpace {
   [[nodiscard]] Eigen::VectorXd read(const Motions& motions, std::span<const double> near) const;
   /// Places all bodies at rest. @param motions  In: those of fixed bodies.
   void place(const Eigen::VectorXd& q, Motions& motions) const;
-  /// Adds small changes to coordinates.
-  void advance(Eigen::VectorXd& q, const Eigen::VectorXd& change) const;
+  /// Turns derivatives by rates, the columns of G, into those by coordinates.
+  void by_coordinates(const Eigen::VectorXd& q, Eigen::MatrixXd& G) const;
+  /// Size of a change of coordinates: of angles [rad], of displacements over a length [-].
+  [[nodiscard]] double size_of(const Eigen::VectorXd& change, double length) const;
 
   /// Motions and their vectors at one position.
   struct Sweep {
-    std::vector<MotionVector> s;  ///< Of a child relative to its parent, by coordinate.
-    std::vector<MotionVector> s_dot;
+    std::vector<MotionVector> s;             ///< Of a child relative to its parent, by coordinate.
     std::vector<MotionVector> twist;         ///< By body.
     std::vector<MotionVector> acceleration;  ///< Likewise, at constant rates.
   };

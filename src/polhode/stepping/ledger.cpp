@@ -13,8 +13,8 @@ namespace {
 
 /// Relative rounding of a sum of numbers.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
-/// Largest drift reported for rounding alone.
-constexpr double kReadsAs = 1e-10;
+/// Largest drift reported for rounding alone, and for bodies that are at rest but for rounding.
+constexpr double kReadsAs = 1e-10, kRestReadsAs = 1e-7;
 
 /// Keeps the larger one; what is not a number stays: std::max() would forget it.
 void keep_larger(double& largest, double value) {
@@ -267,6 +267,12 @@ void EnergyLedger::after_commit(State& state, const Trial& trial) {
       dt * (g * moment.norm() + f.norm() * system_->length_scale() + outside_moment_);
   l.p_noise += (kRounding * p) * (kRounding * p);
   l.l_noise += (kRounding * lever) * (kRounding * lever);
+  // A step closes gaps of rounding by velocities, which are all that bodies at rest have.
+  if (total_mass_ > 0.0 && dt != 0.0) {
+    const double reach = vec(at_n1_.mr).norm() / total_mass_ + system_->length_scale();
+    const double v = 0.25 * kRounding * reach / dt;
+    l.energy_noise = std::max(l.energy_noise, kReadsAs / kRestReadsAs * total_mass_ * v * v);
+  }
   at_n_ = at_n1_;
   sums_are_of_state_ = true;
 }

@@ -148,7 +148,7 @@ TEST(ReadStart, RefusesWhatCannotBe) {
                  "  p: {type: revolute, bodies: [ground, a], at: [0, 0, 0], axis: z, start: 1}\n"
                  "  q: {type: revolute, bodies: [ground, a], at: [0, 0, 1], axis: z, start: 2}\n"
                  "analysis: {duration: 0.01, step: 1 ms}\n"),
-      HasSubstr("joints.q.start: depends on other coordinates, which are given."));
+      HasSubstr("joints.q.start: follows from the other coordinates of its loop"));
   EXPECT_THAT(message_of(slider_crank("", ", start: 1 m")),
               HasSubstr("joint 'C' cannot be closed at these coordinates"));
 }

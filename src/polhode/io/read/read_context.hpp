@@ -63,6 +63,7 @@ struct ReadContext {
   std::string source_file{};          ///< Model file, as shown in messages.
   Variables given_variables{};        ///< Of a part: set by the whole.
   std::vector<JointStart> starts{};   ///< Of the file's own joints, until bodies are placed.
+  bool has_starts = false;            ///< Joints that are read do not start as described.
   std::vector<PartSource> parts{};    ///< Including nested parts.
   /// The file and those containing it as a part, full paths.
   std::vector<std::string> files_above{};

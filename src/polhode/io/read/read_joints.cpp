@@ -359,22 +359,13 @@ class JointReader {
     return std::nullopt;
   }
 
-  /// Joints given with `at` start at zero, unless a start is given; others are checked when the
+  /// Joints given with `at` start at zero, unless starts are given; others are checked when the
   /// start is assembled.
   void check_start() {
     const bool turns = joint_.type == "revolute";
-    for (const auto& [key, coordinate, limits] :
-         {std::tuple("limits", turns ? "rz" : "z", joint_.limits),
-          std::tuple("angle_limits", "rz", joint_.angle_limits)}) {
-      const auto start = start_of(coordinate);
-      if (limits && start &&
-          (limits->lower.value_or(*start) > *start || limits->upper.value_or(*start) < *start))
-        section_.fault("start", format("{:g} is outside of the {}", *start, key),
-                       "Give a start between the stops, or move these.");
-    }
-    if (joint_.assembled_start) return;
+    const bool at_zero = !joint_.assembled_start && !context_.has_starts;
     if (joint_kind(joint_.type).points_apart) {
-      if (!joint_.limits) return;
+      if (!joint_.limits || !at_zero) return;
       const double start = (a_.to_world(joint_.Z_a) - b_.to_world(joint_.Z_b)).norm();
       if (start < joint_.limits->lower.value_or(start) ||
           start > joint_.limits->upper.value_or(start))
@@ -385,12 +376,22 @@ class JointReader {
     }
     for (const auto& [key, coordinate, limits] :
          {std::tuple("limits", turns ? "rz" : "z", joint_.limits),
-          std::tuple("angle_limits", "rz", joint_.angle_limits)})
-      if (limits && !start_of(coordinate) &&
-          (limits->lower.value_or(0.0) > 0.0 || limits->upper.value_or(0.0) < 0.0))
+          std::tuple("angle_limits", "rz", joint_.angle_limits)}) {
+      if (!limits) continue;
+      const auto given = start_of(coordinate);
+      const double start = given.value_or(0.0);
+      if (limits->lower.value_or(start) <= start && limits->upper.value_or(start) >= start)
+        continue;
+      if (given)
+        section_.fault("start",
+                       format("{:.6g} {} is outside of the {}", start,
+                              coordinate[0] == 'r' ? "rad" : "m", key),
+                       "Give a start between the stops, or move these.");
+      else if (at_zero)
         section_.fault(key, "the joint starts at 0, which is outside",
                        "Coordinates count from the start where the joint is given with at: shift "
-                       "the limits, or give at_body or axis_body.");
+                       "the limits, or give start, at_body or axis_body.");
+    }
   }
 
   void complete_distance() {
@@ -428,6 +429,8 @@ class JointReader {
 }  // namespace
 
 void read_joints(ReadContext& context, const SourceNode& node) {
+  context.has_starts = std::ranges::any_of(
+      node.children, [](const SourceNode& joint) { return joint.is_map() && joint.find("start"); });
   for (std::size_t k = 0; k < node.keys.size(); ++k) {
     const SourceNode::Key& key = node.keys[k];
     if (!check_name(context, key, node.children[k], "joints")) continue;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -43,7 +45,14 @@ void read_start(ReadContext& context, const Section& section, const std::string&
   const auto add = [&](const SourceNode& value, const std::string& path,
                        const std::string& coordinate) {
     const bool is_rate = key == "start_rate";
-    if (const auto number = read_number(context, value, path, number_of(coordinate, is_rate)))
+    const auto number = read_number(context, value, path, number_of(coordinate, is_rate));
+    if (!number) return;
+    constexpr double kHalfTurn = std::numbers::pi * (1.0 + 1e-12);
+    if (!is_rate && coordinate.size() == 2 && std::abs(*number) > kHalfTurn)
+      context.fault(value, path, format("is {:.6g} deg", *number * 180.0 / std::numbers::pi),
+                    "Angles start between -180 and 180 deg; shift the joint's zero by x_axis_body, "
+                    "or turn the body that is described.");
+    else
       context.starts.push_back(
           {.joint = static_cast<int>(context.model.joints.size()),
            .coordinate = coordinate,
@@ -53,13 +62,17 @@ void read_start(ReadContext& context, const Section& section, const std::string&
            .value = *number,
            .is_rate = is_rate});
   };
+  if (names.empty()) {
+    context.fault(node, section.path(key), "the joint has no free coordinate", "Leave it out.");
+    return;
+  }
   if (!node.is_map()) {
     if (names.size() == 1)
       add(node, section.path(key), names.front());
     else
       context.fault(node, section.path(key),
                     format("the joint has {} coordinates: {}", names.size(), name_list(names)),
-                    format("Write {{{}: ...}}.", names.empty() ? "x" : names.front()));
+                    format("Write {{{}: ...}}.", names.front()));
     return;
   }
   for (std::size_t k = 0; k < node.keys.size(); ++k) {
@@ -72,53 +85,72 @@ void read_start(ReadContext& context, const Section& section, const std::string&
   }
 }
 
+namespace {
+
+bool is_moving(const Model& model) {
+  return std::ranges::any_of(model.bodies, [](const BodySpec& b) {
+    return !b.fixed && !(b.velocity.isZero(0.0) && b.angular_velocity.isZero(0.0));
+  });
+}
+
+void take(const JointSpace::Motions& motions, Model& model) {
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    BodySpec& body = model.bodies[i];
+    if (body.fixed) continue;
+    body.position = motions[i].r;
+    body.orientation = motions[i].q;
+    body.velocity = motions[i].v;
+    body.angular_velocity = motions[i].omega();
+  }
+}
+
+std::vector<std::string> names_of(const std::vector<JointStart>& starts) {
+  std::vector<std::string> names;
+  for (const JointStart& start : starts) names.push_back(start.name);
+  return names;
+}
+
+/// Places bodies at coordinates, with the rates that they have as described.
+void place_at(const std::vector<JointStart>& starts, Model& model) {
+  const JointSpace space(model, names_of(starts));
+  std::vector<double> q = space.positions(space.model_motions()), rates;
+  if (is_moving(model)) rates = space.rates(space.model_motions());
+  for (const JointStart& start : starts)
+    q.at(static_cast<std::size_t>(index_of(space, start))) = start.value;
+  take(space.place(space.model_motions(), q, rates), model);
+}
+
+/// Sets rates of coordinates at the present position.
+void set_rates(const std::vector<JointStart>& starts, Model& model) {
+  const JointSpace space(model, names_of(starts));
+  const std::vector<double> q = space.positions(space.model_motions());
+  std::vector<double> rates = space.rates(space.model_motions());
+  for (const JointStart& start : starts)
+    rates.at(static_cast<std::size_t>(index_of(space, start))) = start.value;
+  take(space.place(space.model_motions(), q, rates), model);
+}
+
+}  // namespace
+
 void place_starts(ReadContext& context) {
-  const std::vector<JointStart> starts = std::move(context.starts);
+  std::vector<JointStart> starts = std::move(context.starts), rates;
   context.starts.clear();
   if (starts.empty() || !context.diagnostics.empty()) return;
-  Model& model = context.model;
-  std::vector<std::string> wanted;
-  for (const JointStart& start : starts)
-    if (!start.is_rate) wanted.push_back(start.name);
+  const auto first_rate =
+      std::ranges::stable_partition(starts, [](const JointStart& start) { return !start.is_rate; });
+  rates.assign(first_rate.begin(), first_rate.end());
+  starts.erase(first_rate.begin(), first_rate.end());
+  const std::vector<JointStart>* used = &starts;
   try {
-    const JointSpace space(model, wanted);
-    std::vector<double> q = space.positions(space.model_motions());
-    for (const JointStart& start : starts)
-      if (!start.is_rate) q[static_cast<std::size_t>(index_of(space, start))] = start.value;
-    JointSpace::Motions motions = space.place(space.model_motions(), q);
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      motions[i].v = model.bodies[i].velocity;
-      motions[i].W = motions[i].q.conjugate() * model.bodies[i].angular_velocity;
-    }
-    if (std::ranges::any_of(starts, &JointStart::is_rate)) {
-      std::vector<double> rates = space.rates(motions);
-      for (const JointStart& start : starts) {
-        if (!start.is_rate) continue;
-        const int k = index_of(space, start);
-        if (k < 0) {
-          fault(context, start, "the rate follows from those of other joints of the loop",
-                "Give the rate of one of those");
-          return;
-        }
-        rates[static_cast<std::size_t>(k)] = start.value;
-      }
-      motions = space.place(motions, q, rates);
-    }
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      BodySpec& body = model.bodies[i];
-      if (body.fixed) continue;
-      body.position = motions[i].r;
-      body.orientation = motions[i].q;
-      body.velocity = motions[i].v;
-      body.angular_velocity = motions[i].omega();
-    }
+    if (!starts.empty()) place_at(starts, context.model);
+    used = &rates;
+    if (!rates.empty()) set_rates(rates, context.model);
   } catch (const InputError& error) {
-    const auto named = std::ranges::find_if(
-        starts, [&](const JointStart& s) { return !s.is_rate && s.name == error.where(); });
-    if (named != starts.end())
+    const auto named = std::ranges::find(*used, error.where(), &JointStart::name);
+    if (named != used->end())
       fault(context, *named, error.what_is_wrong(), error.hint());
     else
-      fault(context, starts.front(), format("{} {}", error.where(), error.what_is_wrong()),
+      fault(context, used->front(), format("{} {}", error.where(), error.what_is_wrong()),
             error.hint());
   }
 }
