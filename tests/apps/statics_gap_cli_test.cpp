@@ -110,7 +110,7 @@ TEST_F(CommandLine, NamesWhatCannotHoldInStaticsAndTheGap) {
       EXPECT_THAT(result.err, HasSubstr("m remains at " + c.drive +
                                         ". Remove one of them, or change its motion."));
       if (c.model == kLink) {  // what nothing holds is named whatever else fails
-        EXPECT_THAT(result.err, HasSubstr(" Free motion: body 'a' turns about"));
+        EXPECT_THAT(result.err, HasSubstr(" Free motion: the whole model rotates about x; body"));
       }
     }
 }

@@ -46,9 +46,10 @@ void add_solids(const ResultsFrame& frame, std::vector<double>& numbers) {
     for (const ElementSample& e : report.elements) vector(e.principal_stretches);
     for (const ElementSample& e : report.elements) numbers.push_back(e.strain_energy_density);
     numbers.insert(numbers.end(), nodal.stress_error.begin(), nodal.stress_error.end());
-    for (const std::vector<double>* field :
-         {&frame.solid_contacts[s].pressure, &frame.solid_contacts[s].gap})
-      numbers.insert(numbers.end(), field->begin(), field->end());
+    if (s < frame.solid_contacts.size())
+      for (const std::vector<double>* field :
+           {&frame.solid_contacts[s].pressure, &frame.solid_contacts[s].gap})
+        numbers.insert(numbers.end(), field->begin(), field->end());
     for (const InterfaceReport& reaction : frame.interfaces[s]) {
       vector(reaction.force);
       vector(reaction.moment);
