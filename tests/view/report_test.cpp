@@ -82,6 +82,9 @@ TEST(Report, VectorsHaveSizes) {
                               {"j.angle", "rad", {}},
                               {"other.z", "m", {}}})),
             "j.force.x j.force.y j.force.z j.force.size j.angle other.z ");
+  EXPECT_EQ(names(with_sizes(
+                {{"impulse x", "N s", {}}, {"impulse y", "N s", {}}, {"impulse z", "N s", {}}})),
+            "impulse x impulse y impulse z impulse.size ");
   EXPECT_EQ(names(with_sizes({{"ax", "m", {}}, {"by", "m", {}}, {"az", "m", {}}})), "ax by az ");
 }
 

@@ -235,7 +235,7 @@ std::vector<ChannelColumn> with_sizes(const std::vector<ChannelColumn>& columns)
     std::string head = z.name.substr(0, z.name.size() - 1);
     if (x.name != head + "x" || y.name != head + "y" || x.unit != z.unit || y.unit != z.unit)
       continue;
-    if (head.ends_with('.')) head.pop_back();
+    while (head.ends_with('.') || head.ends_with(' ')) head.pop_back();
     ChannelColumn size{head.empty() ? "distance" : head + ".size", z.unit, {}};
     for (std::size_t i = 0; i < z.values.size(); ++i)
       size.values.push_back(std::hypot(x.values[i], y.values[i], z.values[i]));

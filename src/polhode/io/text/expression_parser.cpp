@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -67,7 +68,9 @@ class ExpressionParser : private ExpressionWriter {
     skip_blanks();
     if (at_ >= text_.size())
       stop(0, text_.size(), "the expression " + quote(text_) + " ends too early: " + wanted,
-           "Complete it.");
+           std::ranges::count(text_, '(') > std::ranges::count(text_, ')')
+               ? "Complete it; in a list or map, put an expression with commas in quotes."
+               : "Complete it.");
     stop(at_, 1,
          format("{} cannot be read as a number or expression: {} at {}", quote(text_), wanted,
                 quote(text_.substr(at_, 12))),

@@ -174,6 +174,11 @@ class UnitParser {
       return false;
     }
     const std::optional<Unit> unit = named_unit(word);
+    if (!unit && what_.empty() && at_ < text_.size() && text_[at_] == '(') {
+      what_ = "a unit ends an expression, but " + quote(word) + " follows";
+      hint_ = "Write the unit once, behind the whole expression: 80*sign(v) N.";
+      return false;
+    }
     if (!unit) {
       if (what_.empty()) {
         what_ = "the unit " + quote(word) + " is not known";
