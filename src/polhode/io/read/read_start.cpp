@@ -136,10 +136,10 @@ void place_starts(ReadContext& context) {
   std::vector<JointStart> starts = std::move(context.starts), rates;
   context.starts.clear();
   if (starts.empty() || !context.diagnostics.empty()) return;
-  const auto first_rate =
-      std::ranges::stable_partition(starts, [](const JointStart& start) { return !start.is_rate; });
-  rates.assign(first_rate.begin(), first_rate.end());
-  starts.erase(first_rate.begin(), first_rate.end());
+  const auto first_rate = std::stable_partition(
+      starts.begin(), starts.end(), [](const JointStart& start) { return !start.is_rate; });
+  rates.assign(first_rate, starts.end());
+  starts.erase(first_rate, starts.end());
   const std::vector<JointStart>* used = &starts;
   try {
     if (!starts.empty()) place_at(starts, context.model);
