@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 folders=()
-for folder in src apps tests benchmarks examples fuzz; do
+for folder in src apps python/src tests benchmarks examples fuzz; do
   [ -d "$folder" ] && folders+=("$folder")
 done
 mode=(-i)

@@ -9,8 +9,8 @@ namespace polhode::python {
 
 /// A model that was read, with the Python callables of its loads.
 ///
-/// The loads borrow the callables; the list owns them, here and in each Engine made from the model, and shows them to
-/// Python's collector of cycles: a force may know the simulation that calls it.
+/// The loads borrow the callables; the list owns them, here and in each Engine made from the model,
+/// and shows them to Python's collector of cycles: a force may know the simulation that calls it.
 struct CompiledModel {
   Model model;
   nb::object calls = nb::list();

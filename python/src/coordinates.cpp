@@ -37,8 +37,8 @@ Coordinates::Coordinates(const Model& model, const System& system,
     const IndependentCoordinate& c = space_.coordinates()[k];
     play_.push_back(0.0);
     if (c.joint < 0) continue;
-    if (const Resistance* r = joint_at(system, joints.at(static_cast<std::size_t>(c.joint)))
-                                  .resistance()) {
+    if (const Resistance* r =
+            joint_at(system, joints.at(static_cast<std::size_t>(c.joint))).resistance()) {
       // As at the start of a model.
       const std::optional<JointLimits>& limits = c.turns ? r->data().turn : r->data().slide;
       if (limits && limits->by_rows)
@@ -49,7 +49,7 @@ Coordinates::Coordinates(const Model& model, const System& system,
     if (!c.turns) continue;
     const int interaction = joints.at(static_cast<std::size_t>(c.joint));
     const Joint& joint = joint_at(system, interaction);
-    if (!joint.free_angle(c.coordinate)) continue;  // of a rotation vector
+    if (!joint.free_angle(c.coordinate)) continue;  // a component of a rotation vector
     const std::vector<std::string> names = joint.coordinate_names();
     Angle angle{.coordinate = k, .interaction = interaction};
     for (std::size_t i = 0; names[i] != c.coordinate; ++i)

@@ -35,7 +35,7 @@ class Coordinates {
   struct Angle {
     std::size_t coordinate = 0;
     int interaction = 0;
-    int history = 0;        ///< Into the history of the joint.
+    int history = 0;  ///< Into the history of the joint.
   };
 
   JointSpace space_;

@@ -92,8 +92,8 @@ class Engine {
   }
   /// Sets positions and velocities of moving bodies, by index, at the present time. Then joints are
   /// assembled, velocities projected, and turn counts and the energy balance reset.
-  /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts
-  /// of surfaces.
+  /// @throws InputError if the joints cannot be assembled, and for models with solids or with
+  /// surfaces in contact.
   void set_motions(const std::map<int, BodyMotion>& motions);
 
   /// Joint coordinates, made at first use. @throws InputError for a model that has none.

@@ -22,9 +22,10 @@ nb::tuple step_equations(Engine& engine, double dt, const std::optional<std::vec
   Simulation& simulation = *used;
   const Model& model = engine.model();
   if (model.analysis.type != "dynamics" || !model.solids.empty() || simulation.has_contacts())
-    throw InputError("step_equations",
-                     "are available only for bodies and joints in dynamics, without solids and contacts",
-                     "Leave these out of the model");
+    throw InputError(
+        "step_equations",
+        "are available only for bodies and joints in dynamics, without solids and contacts",
+        "Leave these out of the model");
   const System& system = simulation.system();
   const State& state = simulation.state();
   const Method method = choose_method(system, model.analysis);

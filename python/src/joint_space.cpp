@@ -25,7 +25,8 @@ List numbers_of(const Input& given, const char* name, std::size_t columns, std::
       shape += format("{}{}", k == 0 ? "" : ", ", given.shape(k));
     if (given.ndim() == 1) shape += ",";
     throw nb::value_error(
-        format("{} has the shape ({}), but there are {} coordinates", name, shape, columns).c_str());
+        format("{} has the shape ({}), but there are {} coordinates", name, shape, columns)
+            .c_str());
   }
   if (several) *rows = given.shape(0);
   List list(given.data(), given.data() + given.size());
@@ -146,9 +147,9 @@ Array jacobian(Engine& engine, int body, const List& point, const std::optional<
   Evaluation at(engine);
   at.go(q);
   const std::size_t n = at.size();
-  return array_of(at.space().jacobian(at.motions, body_of(engine, body),
-                                      from_centre(engine, body, point)),
-                  {6, n});
+  return array_of(
+      at.space().jacobian(at.motions, body_of(engine, body), from_centre(engine, body, point)),
+      {6, n});
 }
 
 /// Row by row of T positions, which follow each other.

@@ -40,12 +40,12 @@ class Reading {
   }
   void set(const PointReading& x) {
     double* to = numbers_.get();
-    for (const double v : {x.position[0], x.position[1], x.position[2], x.velocity[0],
-                           x.velocity[1], x.velocity[2]})
+    for (const double v :
+         {x.position[0], x.position[1], x.position[2], x.velocity[0], x.velocity[1], x.velocity[2]})
       *to++ = v;
     const double sign = x.orientation.w() < 0.0 ? -1.0 : 1.0;
-    for (const double v : {x.orientation.w(), x.orientation.x(), x.orientation.y(),
-                           x.orientation.z()})
+    for (const double v :
+         {x.orientation.w(), x.orientation.x(), x.orientation.y(), x.orientation.z()})
       *to++ = sign * v;
     for (const double v : x.angular_velocity) *to++ = v;
   }
@@ -63,7 +63,8 @@ class Reading {
   nb::object object_;
 };
 
-/// A Python callable of the time and of the motion of a body's point: f(t, body). It is borrowed, see CompiledModel.
+/// A Python callable of the time and of the motion of a body's point: f(t, body). It is borrowed,
+/// see CompiledModel.
 class PointCall {
  public:
   PointCall(nb::handle function, nb::handle derivative)
@@ -82,8 +83,8 @@ class PointCall {
 
   [[nodiscard]] PointDerivative derivative(const PointReading& x) {
     const nb::gil_scoped_acquire locked;
-    const nb::dict parts = nb::cast<nb::dict>(nb::module_::import_("polhode._functions")
-                                                  .attr("derivative_parts")(call(derivative_, x)));
+    const nb::dict parts = nb::cast<nb::dict>(
+        nb::module_::import_("polhode._functions").attr("derivative_parts")(call(derivative_, x)));
     PointDerivative d;
     const auto read = [&](const char* key, Mat3& M) {
       if (!parts.contains(key)) return;
@@ -111,7 +112,8 @@ class PointCall {
   std::unique_ptr<Reading> reading_;  ///< Kept between calls; gone during one.
 };
 
-/// A Python callable of the time, a coordinate and its rate: f(t, q, rate). It is borrowed, likewise.
+/// A Python callable of the time, a coordinate and its rate: f(t, q, rate). It is borrowed,
+/// likewise.
 class CoordinateCall {
  public:
   CoordinateCall(nb::handle function, nb::handle derivative)
@@ -127,7 +129,8 @@ class CoordinateCall {
     if (!PySequence_Check(pair.ptr()) || PySequence_Size(pair.ptr()) != 2) {
       PyErr_Clear();
       throw nb::type_error(
-          "A tangent along a coordinate must return two numbers: the derivatives by the coordinate and by its rate.");
+          "A tangent along a coordinate must return two numbers: the derivatives by the coordinate "
+          "and by its rate.");
     }
     return {number_of(nb::object(pair[0])), number_of(nb::object(pair[1]))};
   }

@@ -47,9 +47,8 @@ void bind_rotations(nb::module_& m) {
                 [](const double* x) { return exp_map(Vec3(x[0], x[1], x[2])); });
   });
   m.def("rotation_vector_from_matrix", [](Rows<3, 3> R) {
-    return each(R.data(), R.shape(0), 9, {3}, [](const double* x) {
-      return log_map(Mat3(Eigen::Map<const Matrix>(x)));
-    });
+    return each(R.data(), R.shape(0), 9, {3},
+                [](const double* x) { return log_map(Mat3(Eigen::Map<const Matrix>(x))); });
   });
   m.def("matrix_from_cayley", [](Rows<3> v) {
     return each(v.data(), v.shape(0), 3, {3, 3},
@@ -71,9 +70,8 @@ void bind_rotations(nb::module_& m) {
                 [](const double* x) { return rotation_vector(quaternion(x).normalized()); });
   });
   m.def("matrix_from_quaternion", [](Rows<4> q) {
-    return each(q.data(), q.shape(0), 4, {3, 3}, [](const double* x) {
-      return quaternion(x).normalized().toRotationMatrix();
-    });
+    return each(q.data(), q.shape(0), 4, {3, 3},
+                [](const double* x) { return quaternion(x).normalized().toRotationMatrix(); });
   });
   m.def("quaternion_from_matrix", [](Rows<3, 3> R) {
     return each(R.data(), R.shape(0), 9, {4},

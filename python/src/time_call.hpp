@@ -9,8 +9,8 @@
 
 namespace polhode::python {
 
-/// A Python callable of the time that gives one number or three; it is called once for each time. It is borrowed, see
-/// CompiledModel.
+/// A Python callable of the time that gives one number or three; it is called once for each time.
+/// It is borrowed, see CompiledModel.
 class TimeCall {
  public:
   TimeCall(nb::handle function, std::size_t size) : function_(function), values_(size, 0.0) {}

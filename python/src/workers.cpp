@@ -95,7 +95,8 @@ nb::tuple advance_all(Workers& workers, const std::vector<Engine*>& engines,
     const auto numbers = engines[i]->held();
     const std::size_t size = numbers ? numbers->now.size() : 0;
     if (held.shape(1) != size)
-      throw nb::value_error(format("There are {} moments and forces, not {}.", size, held.shape(1)).c_str());
+      throw nb::value_error(
+          format("There are {} moments and forces, not {}.", size, held.shape(1)).c_str());
     uses.push_back(std::make_unique<Engine::Use>(*engines[i]));
     for (std::size_t k = 0; k < size; ++k) {
       const double value = held(i, k);
@@ -116,7 +117,8 @@ nb::tuple advance_all(Workers& workers, const std::vector<Engine*>& engines,
         const Coordinates& of = engines[i]->coordinates();
         const Simulation& simulation = **uses[i];
         const JointSpace::Motions motions = of.motions(simulation.system(), simulation.state());
-        const std::vector<double> q = of.positions(simulation.system(), simulation.state(), motions),
+        const std::vector<double> q = of.positions(simulation.system(), simulation.state(),
+                                                   motions),
                                   qd = of.space().rates(motions);
         std::copy(q.begin(), q.end(), seen.data() + 2 * n * i);
         std::copy(qd.begin(), qd.end(), seen.data() + 2 * n * i + n);
@@ -136,8 +138,8 @@ void bind_workers(nb::module_& m) {
   nb::class_<Workers>(m, "Workers", "Threads for simulations side by side.")
       .def(nb::init<int>(), nb::arg("threads"))
       .def_prop_ro("size", &Workers::size)
-      .def("advance", &advance_all, nb::arg("engines"), nb::arg("until"),
-           nb::arg("tau"), nb::arg("observe"));
+      .def("advance", &advance_all, nb::arg("engines"), nb::arg("until"), nb::arg("tau"),
+           nb::arg("observe"));
 }
 
 }  // namespace polhode::python

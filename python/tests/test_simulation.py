@@ -2,6 +2,7 @@
 """Stepping, setting, copying; loads from Python; modes and matrices."""
 
 import pathlib
+from typing import Any
 
 import numpy as np
 import pytest
@@ -196,3 +197,47 @@ def test_results_cannot_be_overwritten(pendulum: polhode.Model, tmp_path: pathli
                 array[0] = 9.0
         own = result.bodies["arm"].position.copy()
         own[0] = 9.0
+
+
+def test_bodies_in_contact_are_set_apart_and_fall() -> None:
+    """A ball set to another height behaves as one that starts there; overlaps are refused."""
+    def ball(z: float, **keys: Any) -> polhode.Model:
+        m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 1, "step": "1 ms"}, **keys)
+        m.add_body("floor", fixed=True, shape={"plane": "z"}, contact={"material": "soft"})
+        m.add_body("ball", shape=polhode.Sphere(0.2), density=1000, position=[0, 0, z], contact={"material": "soft"})
+        m.add_contact_material("soft", friction=0.5, restitution=0.5)
+        return m
+
+    for keys in ({}, {"contacts": {"default": {"law": "nonsmooth"}}}, {"contacts": {"default": {"law": "rigid"}}}):
+        there = polhode.Simulation(ball(0.2, **keys))
+        sim = polhode.Simulation(ball(0.5, **keys))
+        for _ in range(300):
+            sim.step()
+        sim.reset([0, 0, 0.2, 0, 0, 0])
+        heights = []
+        for s in (sim, there):
+            heights.append([s.step() and s.bodies["ball"].position[2] for _ in range(400)])
+        assert heights[0] == pytest.approx(heights[1], abs=1e-12) and min(heights[0]) > 0.09
+        assert min(heights[0][200:]) < 0.11 < max(heights[0][200:])
+        with pytest.raises(polhode.ModelError, match="shapes overlap there"):
+            sim.q = [0, 0, 0.02, 0, 0, 0]
+        assert sim.bodies["ball"].position[2] == heights[0][-1]
+
+
+def test_controllers_act_where_motions_are_set() -> None:
+    """A servo sampled every 10 ms: after a reset it acts at once, as at the start of a model there."""
+    def servo(angle: float) -> polhode.Model:
+        m = polhode.Model(analysis={"duration": 1, "step": "1 ms"})
+        disc = m.add_body("disc", mass=1, inertia=[0.1, 0.1, 0.2])
+        m.add_joint("axle", "revolute", ["ground", disc], at=[0, 0, 0], axis="z", start=angle)
+        m.add_controller("pd", joint="axle", channel="rz", setpoint=1.0, proportional=20, derivative=2, sample=0.01)
+        m.add_load("motor", "rotary_motor", joint="axle", moment={"controller": "pd"})
+        return m
+
+    there, sim = polhode.Simulation(servo(0.5)), polhode.Simulation(servo(0))
+    sim.run(0.3)
+    sim.reset([0.5])
+    for _ in range(100):
+        sim.step()
+        there.step()
+    assert sim.q == pytest.approx(there.q, abs=1e-12) and abs(sim.q[0] - 1) < 0.4

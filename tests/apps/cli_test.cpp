@@ -212,6 +212,27 @@ TEST_F(CommandLine, ChecksMobilityAndTangents) {
   EXPECT_EQ(value(result.out, "passed"), "true");
 }
 
+/// Length of the path less that of the tendon, over the optimal length.
+TEST_F(CommandLine, ChecksTheLengthOfFibres) {
+  const auto muscle = [&](const char* optimal) {
+    write("muscle.yaml",
+          "format: 1\nbodies: {b: {mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0]}}\n"
+          "cables:\n  m: {through: [[ground, [0, 0, 0]], [b, [0, 0, 0]]], muscle: {max_force: 10, "
+          "optimal_length: " +
+              std::string(optimal) +
+              ", tendon_length: 0.38, activation: 0.1}}\n"
+              "analysis: {duration: 1, step: 1 ms}\n");
+    return run({"check", "muscle.yaml"});
+  };
+  const auto usual = muscle("0.1");
+  EXPECT_THAT(usual.out, HasSubstr("fibres at 1.2 of their optimal length"));
+  EXPECT_THAT(usual.err, testing::Not(HasSubstr("fibres of muscle")));
+  EXPECT_THAT(muscle("0.05").err, HasSubstr("The fibres of muscle 'm' start at 2.4 of their"));
+  EXPECT_THAT(muscle("0.5").err, HasSubstr("The fibres of muscle 'm' start at 0.24 of their"));
+  EXPECT_THAT(run({"check", "muscle.yaml", "--json"}).out,
+              HasSubstr("\"fibre_over_optimal\": 0.24"));
+}
+
 TEST_F(CommandLine, NamesWhatPrescribesAllMotion) {
   const auto model = [](const char* shaft) {
     return std::string(R"yaml(format: 1

@@ -37,7 +37,7 @@ Model pendulum(double angle) {
 
 int main() {
   Simulation simulation(pendulum(1e-3));
-  const double half_period = std::numbers::pi * std::sqrt(2.0 / 3.0 / 9.81);  // of small swings
+  const double half_period = std::numbers::pi * std::sqrt(2.0 / 3.0 / 9.81);  // linear pendulum
   while (simulation.time() < half_period) simulation.step(half_period);
 
   const double angle = simulation.joint("hinge").coordinates[0];

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// Where a body is to be.
+/// Target position of a point of a body, and target orientation of the body.
 struct PoseTarget {
   int body = 0;                       ///< Index into Model::bodies.
   Vec3 point = Vec3::Zero();          ///< Of it, from the centre of mass, body axes [m].

@@ -13,9 +13,9 @@ namespace polhode {
 
 /// A coordinate along which a joint lets its bodies move, or along which a free body moves.
 ///
-/// Coordinates of joints are those that joints report. A free body has the position of its centre
-/// of mass, x, y, z, and the rotation vector of its orientation, rx, ry, rz. The rates of three
-/// free rotations are the components of the angular velocity in the axes of the first body, as in
+/// Coordinates of joints are those that joints report. A free body has x, y, z, the position of its
+/// centre of mass, and rx, ry, rz, the rotation vector of its orientation. Three free rotations
+/// have as rates the components of the angular velocity in the axes of the first body, as in
 /// reports.
 struct IndependentCoordinate {
   /// Name of the joint, with the coordinate if it has several: "elbow", "wrist.rx", "hull.x".

@@ -61,7 +61,7 @@ class TreeSpace {
     std::vector<MotionVector> acceleration;  ///< Likewise, at constant rates.
   };
   [[nodiscard]] Sweep sweep(const Motions& motions) const;
-  /// The same with velocities and accelerations at given rates.
+  /// Motion vectors, velocities and accelerations at given rates.
   [[nodiscard]] Sweep sweep(const Motions& motions, const Eigen::VectorXd& rates) const;
   /// Sets velocities.
   static void set_velocities(const Sweep& sweep, Motions& motions);

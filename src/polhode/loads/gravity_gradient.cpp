@@ -19,7 +19,7 @@ struct PowerQuotient {
 };
 
 PowerQuotient power_quotient(int k, double l0, double l1) {
-  double sum = 0.0, sum_l0 = 0.0, sum_l1 = 0.0;  // of l_0^i l_1^(k-1-i)
+  double sum = 0.0, sum_l0 = 0.0, sum_l1 = 0.0;  // sums of l_0^i l_1^(k-1-i)
   for (int i = 0; i < k; ++i) {
     const int j = k - 1 - i;
     sum += std::pow(l0, i) * std::pow(l1, j);

@@ -28,8 +28,8 @@ class Rotor : public InteractionItem {
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {function_}; }
   [[nodiscard]] int time_order() const { return has_speed_ ? 1 : 2; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
-  /// Work of the drive, the moment between body and rotor, at the rotor's speed. The kinetic energy
-  /// of the rotor is not stored here: see added_energy().
+  /// Work of the drive, the moment between body and rotor, at the rotor's speed. Not
+  /// stored here is the rotor's kinetic energy: see added_energy().
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: moment on the body [N m], speed relative to it [rad/s], momentum along
   /// the axis and as a vector [N m s], moment on the rotor about the axis, for a given speed the

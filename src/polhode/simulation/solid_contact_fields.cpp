@@ -9,11 +9,19 @@
 
 namespace polhode {
 
-bool has_contact_fields(const Simulation& simulation, int solid) {
+namespace {
+
+/// Whether a contact takes place on the surface of a solid.
+bool is_on(const ContactMap::Surface& surface, int solid) {
   const auto is_it = [&](const Side& side) { return side.is_solid() && side.index == solid; };
-  return std::ranges::any_of(simulation.contact_map().surfaces, [&](const ContactMap::Surface& s) {
-    return is_it(s.own) || is_it(s.side);
-  });
+  return is_it(surface.own) || is_it(surface.side);
+}
+
+}  // namespace
+
+bool has_contact_fields(const Simulation& simulation, int solid) {
+  return std::ranges::any_of(simulation.contact_map().surfaces,
+                             [&](const ContactMap::Surface& s) { return is_on(s, solid); });
 }
 
 SolidContactFields solid_contact_fields(const Simulation& simulation, int solid) {
@@ -26,8 +34,9 @@ SolidContactFields solid_contact_fields(const Simulation& simulation, int solid)
   const NodeStep instant = node_instant(system, state, still);
   std::vector<surface_contact::NodeContact> sums(static_cast<std::size_t>(nodes.count()));
   for (const ContactMap::Surface& s : simulation.contact_map().surfaces)
-    s.touching->add_to_nodes(instant, state.element_history.data() + nodes.first_history(s.group),
-                             sums);
+    if (is_on(s, solid))
+      s.touching->add_to_nodes(instant, state.element_history.data() + nodes.first_history(s.group),
+                               sums);
   const SolidMap& map = simulation.solids().at(static_cast<std::size_t>(solid));
   SolidContactFields fields;
   for (int k = 0; k < map.node_count(); ++k) {

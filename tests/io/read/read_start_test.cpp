@@ -90,32 +90,6 @@ TEST(ReadStart, PlacesBodiesThatAreGivenByTheirJointsAlone) {
   EXPECT_EQ(Simulation(model).start_report().largest_move, 0.0);
 }
 
-/// A crank of 0.3 m, drawn upwards, with a rod of √(0.8² + 0.3²) m to a slider.
-std::string slider_crank(const std::string& crank, const std::string& slider) {
-  return "format: 1\nbodies:\n"
-         "  crank: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0.15, 0]}\n"
-         "  rod: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.4, 0.15, 0]}\n"
-         "  slider: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.8, 0, 0]}\n"
-         "joints:\n"
-         "  A: {type: revolute, bodies: [ground, crank], at: [0, 0, 0], axis: z" +
-         crank +
-         "}\n"
-         "  B: {type: revolute, bodies: [crank, rod], at: [0, 0.3, 0], axis: z}\n"
-         "  C: {type: revolute, bodies: [rod, slider], at: [0.8, 0, 0], axis: z}\n"
-         "  D: {type: prismatic, bodies: [ground, slider], at: [0.8, 0, 0], axis: x" +
-         slider +
-         "}\n"
-         "analysis: {duration: 0.01, step: 1 ms}\n";
-}
-
-TEST(ReadStart, ClosesLoops) {
-  const Model model = model_of(slider_crank(", start: -90 deg, start_rate: 1", ""));
-  // The crank points along the guide: the slider is a rod and a crank away.
-  EXPECT_LT((model.bodies[2].position - Vec3(0.3 + std::hypot(0.8, 0.3), 0, 0)).norm(), 1e-13);
-  EXPECT_LT(model.bodies[2].velocity.norm(), 1e-13);
-  EXPECT_LT((model.bodies[0].velocity - Vec3(0, 0.15, 0)).norm(), 1e-13);
-}
-
 TEST(ReadStart, OfAPartIsPlacedWithIt) {
   const Model model = model_of(
       "format: 1\nparts:\n"
@@ -149,8 +123,6 @@ TEST(ReadStart, RefusesWhatCannotBe) {
                  "  q: {type: revolute, bodies: [ground, a], at: [0, 0, 1], axis: z, start: 2}\n"
                  "analysis: {duration: 0.01, step: 1 ms}\n"),
       HasSubstr("joints.q.start: follows from the other coordinates of its loop"));
-  EXPECT_THAT(message_of(slider_crank("", ", start: 1 m")),
-              HasSubstr("joint 'C' cannot be closed at these coordinates"));
 }
 
 }  // namespace

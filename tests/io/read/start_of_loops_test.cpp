@@ -253,6 +253,7 @@ TEST(StartOfLoops, LeavesHeldFreedomsToTheOthers) {
   EXPECT_LT((model.bodies[1].position - Vec3(0, 1.5, 0)).norm(), 1e-12);
 }
 
+/// A crank of 0.3 m, drawn upwards, with a rod of √(0.8² + 0.3²) m to a slider.
 std::string slider_crank(const std::string& crank, const std::string& slider) {
   return "bodies:\n"
          "  crank: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0.15, 0]}\n"
@@ -266,6 +267,16 @@ std::string slider_crank(const std::string& crank, const std::string& slider) {
          "  C: {type: revolute, bodies: [rod, slider], at: [0.8, 0, 0], axis: z}\n"
          "  D: {type: prismatic, bodies: [ground, slider], at: [0.8, 0, 0], axis: x" +
          slider + "}\n";
+}
+
+TEST(StartOfLoops, ClosesThem) {
+  const Model model = model_of(slider_crank(", start: -90 deg, start_rate: 1", ""));
+  // The crank points along the guide: the slider is a rod and a crank away.
+  EXPECT_LT((model.bodies[2].position - Vec3(0.3 + std::hypot(0.8, 0.3), 0, 0)).norm(), 1e-13);
+  EXPECT_LT(model.bodies[2].velocity.norm(), 1e-13);
+  EXPECT_LT((model.bodies[0].velocity - Vec3(0, 0.15, 0)).norm(), 1e-13);
+  EXPECT_THAT(message_of(slider_crank("", ", start: 1 m")),
+              HasSubstr("joint 'C' cannot be closed at these coordinates"));
 }
 
 TEST(StartOfLoops, TakesTheRateOfAnyJoint) {
