@@ -53,6 +53,9 @@ def _run(model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides,
     if not isinstance(model, Model):
         model = load(model)
     compiled = model._compile(overrides)
+    if math.isinf(compiled.duration):
+        raise fault("analysis.duration", "is none, but a run needs an end",
+                    "Give a duration, in the model or in overrides, or take steps of a Simulation")
     if not all_steps and output is None and (thinned := _thinned(model, compiled, overrides or {})):
         compiled = model._compile({**(overrides or {}), **thinned})
     if compiled.analysis == "modes":

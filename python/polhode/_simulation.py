@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Callable, NamedTuple, Optional, Union
@@ -212,7 +213,7 @@ class Simulation(JointSpace):
 
     @property
     def end(self) -> float:
-        """End time of the model's analysis [s]."""
+        """End time of the model's analysis [s]; infinite for `duration: none`."""
         return self._end
 
     @property
@@ -258,7 +259,7 @@ class Simulation(JointSpace):
         return Step(t, dt, iterations, rejected)
 
     def __iter__(self) -> "Iterator[Step]":
-        """Steps to the end of the analysis."""
+        """Steps to the end of the analysis; endlessly for `duration: none`."""
         while self.time < self.end * (1 - 1e-9):
             yield self.step()
 
@@ -270,8 +271,11 @@ class Simulation(JointSpace):
         observe: "Optional[Callable[[Simulation], Any]]" = None,
     ) -> Result:
         """Steps until a time [s] or until stop(simulation) is true after a step; observe(simulation)
-        is called at the beginning and after every step. Returns the frames of all steps."""
+        is called at the beginning and after every step. Returns the frames of all steps. With `duration: none`
+        one of `until` and `stop` is required."""
         end = self.end if until is None else until
+        if math.isinf(end) and stop is None:
+            raise ValueError("the model has the duration none: give `until` [s], or `stop`")
         recording = self._engine.record()
         ended = "finished"
         while True:
@@ -305,4 +309,5 @@ class Simulation(JointSpace):
         return other
 
     def __repr__(self) -> str:
-        return f"<polhode.Simulation at t = {self.time:g} s of {self.end:g} s>"
+        of = "" if math.isinf(self.end) else f" of {self.end:g} s"
+        return f"<polhode.Simulation at t = {self.time:g} s{of}>"

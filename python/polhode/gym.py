@@ -240,7 +240,8 @@ def make(
     reward:        reward(sim, action) after a period; zero unless given.
     terminated:    terminated(sim) after a period; never unless given.
     action_period: time for which an action is constant [s]; one step of the model unless given.
-    max_time:      end of an episode [s], which is then truncated; the duration of the model unless given.
+    max_time:      end of an episode [s], which is then truncated; the duration of the model unless given, so never
+                   with `duration: none`.
     reset:         how episodes begin: at the start of the model; a number adds uniform noise up to it to q and qd;
                    reset(rng) returns q and qd, None for those of the start, with a NumPy generator.
 

@@ -241,3 +241,44 @@ def test_controllers_act_where_motions_are_set() -> None:
         sim.step()
         there.step()
     assert sim.q == pytest.approx(there.q, abs=1e-12) and abs(sim.q[0] - 1) < 0.4
+
+
+def test_endless_steps_are_those_of_a_model_with_an_end(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
+    ended, endless = polhode.Simulation(pendulum), polhode.Simulation(pendulum, {"analysis.duration": "none"})
+    for _ in ended:
+        endless.step()
+    assert endless.state == ended.state and endless.end == float("inf") and repr(endless).endswith("at t = 1 s>")
+    with pytest.raises(polhode.ModelError):
+        ended.step()
+    for step in endless:
+        if step.time > 2:
+            break
+    longer = polhode.run(pendulum, overrides={"analysis.duration": endless.time})
+    assert endless.q == pytest.approx(longer.joints["hinge"].coordinates[-1], abs=1e-12)
+    assert endless.copy().run(2.5).time[-1] == pytest.approx(2.5)
+    assert endless.run(stop=lambda s: s.time > 2.1).end == "stopped"
+    with pytest.raises(ValueError, match="the model has the duration none: give `until`"):
+        endless.run()
+    pendulum.analysis.duration = "none"
+    pendulum.check()
+    for output in (None, tmp_path / "out"):
+        with pytest.raises(polhode.ModelError, match="is none, but a run needs an end"):
+            polhode.run(pendulum, output=output)
+    assert not (tmp_path / "out").exists()
+    pendulum.analysis.step = None
+    with pytest.raises(polhode.ModelError, match="none requires a fixed step"):
+        pendulum.check()
+
+
+def test_a_function_along_a_joint_is_a_joint_moment() -> None:
+    """Against the same moment of a motor, over time and over the motion."""
+    laws: "list[Any]" = [lambda t: 3 * t, lambda t, angle, rate: 2 - 5 * angle - 0.1 * rate]
+    for law in laws:
+        ends = []
+        for kind in ("joint_moment", "rotary_motor"):
+            m = polhode.Model(analysis={"duration": 1, "step": "5 ms"})
+            disc = m.add_body("disc", mass=1, inertia=[0.1, 0.1, 0.2])
+            m.add_joint("axle", "revolute", ["ground", disc], at=[0, 0, 0], axis="z")
+            m.add_load("drive", kind, joint="axle", moment=law)
+            ends.append(polhode.run(m).joints["axle"].coordinates[-1, 0])
+        assert ends[0] == ends[1] != 0

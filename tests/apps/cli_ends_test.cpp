@@ -24,6 +24,33 @@ TEST_F(CommandLine, EndsWith4AndKeepsTheLastStateWhenAStepDoesNotConverge) {
   EXPECT_TRUE(exists("model.results/results.h5"));
 }
 
+// Steps without an end are for programs; a run needs one, from the model or the command.
+TEST_F(CommandLine, RunsAnEndlessModelForAGivenTime) {
+  const std::vector<std::string> endless = {"--set", "analysis.duration=none"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.end(), endless.begin(), endless.end());
+    return run(words);
+  };
+  for (const auto& [command, more] :
+       {std::pair("run", "--quiet"), std::pair("certify", "--quiet")}) {
+    const auto refused = with({command, "model.yaml", more});
+    EXPECT_EQ(refused.code, 3) << command;
+    EXPECT_THAT(refused.err, HasSubstr("analysis.duration: is none, but a run needs an end. Give a "
+                                       "duration, in the model or by --duration \"10 s\""));
+  }
+  EXPECT_FALSE(exists("model.results"));
+  EXPECT_THAT(with({"check", "model.yaml"}).out,
+              HasSubstr("none     steps from Python or C++; a run needs --duration"));
+  EXPECT_THAT(with({"info", "model.yaml"}).out, HasSubstr("without an end"));
+  const auto some = with({"run", "model.yaml", "--duration", "0.2 s", "--json"});
+  EXPECT_EQ(some.code, 0) << some.err;
+  const auto usual = run({"run", "model.yaml", "--set", "analysis.duration=0.2 s", "--json"});
+  EXPECT_EQ(value(some.out, "result_hash"), value(usual.out, "result_hash"));
+  EXPECT_EQ(value(some.out, "t"), "0.2");
+  EXPECT_THAT(with({"check", "model.yaml", "--set", "analysis.step=auto"}).err,
+              HasSubstr("analysis.duration: none requires a fixed step."));
+}
+
 // A stiff oscillator that numerical dissipation damps at a coarse step, not at a hundredth of it.
 TEST_F(CommandLine, EndsWith6WhenAStrictRunIsNotTrusted) {
   write("stiff.yaml", R"(format: 1

@@ -8,6 +8,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/loads/force_law.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/model/endless.hpp>
 #include <polhode/newton/rank_report.hpp>
 #include <polhode/newton/tangent_check.hpp>
 #include <polhode/statics/static_reach.hpp>
@@ -128,11 +129,9 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                "the reactions are not: those of smallest norm are reported.",
                rank.redundant, rank.rows, name_list(rank.names, 12)));
   }
-  if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty())
-    list.push_back(drives(simulation).empty()
-                       ? "The mobility is 0: nothing can move."
-                       : format("The mobility is 0: all motion is prescribed, by {}.",
-                                name_list(drives(simulation), 12)));
+  if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty() &&
+      drives(simulation).empty())
+    list.emplace_back("The mobility is 0: nothing can move.");
   if (simulation.has_contacts() && simulation.model().analysis.rho_inf < 1.0)
     list.push_back(
         format("rho_inf is {:g}: numerical damping takes energy from every contact, so restitution "
@@ -374,6 +373,8 @@ int check(const CheckOptions& options) {
         {"velocity residual", format("{:.1e}", start.velocity_residual),
          format("at the start; velocities were corrected by up to {:.1e}", start.velocity_change)},
         {"solver", simulation.summary().solver}};
+    if (is_endless(simulation.model().analysis))
+      rows.push_back({"duration", "none", "steps from Python or C++; a run needs --duration"});
     for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
       const SolidMap& solid = simulation.solids()[i];
       rows.push_back({format("solid {}", simulation.model().solids[i].name),

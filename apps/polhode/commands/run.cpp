@@ -12,6 +12,7 @@
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/io/text/file_error.hpp>
+#include <polhode/model/endless.hpp>
 
 #include "certify_report.hpp"
 #include "command.hpp"
@@ -30,7 +31,7 @@ constexpr const char* kPageName = "view.html";
 
 struct RunOptions {
   ModelArguments model;
-  std::string folder, restart, isa;
+  std::string folder, restart, isa, duration;
   std::optional<double> wall_limit;
   bool json = false, quiet = false, certify = false, view = false, strict = false;
   CertifyRequest certificate;
@@ -94,6 +95,7 @@ void show_results(const std::string& folder, bool quiet) {
 int run(const RunOptions& options) {
   const double start = wall_clock();
   Model model = load_model(options.model);
+  require_end(model.analysis);
   if (options.certify) check_certifiable(model);
   // A load step or the search for modes may take long; steps in time end soon.
   if (options.wall_limit && model.analysis.type != "dynamics") stop_after(*options.wall_limit);
@@ -183,6 +185,10 @@ Action add_run(CLI::App& command) {
                   "Folder for the results; left out: the model's name with .results")
       ->type_name("DIR");
   add_set_option(command, options->model);
+  command
+      .add_option("--duration", options->duration,
+                  "Length of the motion, such as 10 s, instead of the model's")
+      ->type_name("TIME");
   add_isa_option(command, options->isa);
   command.add_option("--restart", options->restart, "Continue from a checkpoint of this model")
       ->type_name("FILE");
@@ -199,6 +205,8 @@ Action add_run(CLI::App& command) {
   command.add_flag("--json", options->json, "Print the summary of the run as one JSON object");
   command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] {
+    if (!options->duration.empty())
+      options->model.overrides.push_back("analysis.duration=" + options->duration);
     if (!options->isa.empty()) options->model.overrides.push_back("analysis.isa=" + options->isa);
     return run(*options);
   };

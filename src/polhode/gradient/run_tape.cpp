@@ -5,6 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/dynamics/composition.hpp>
 #include <polhode/gradient/run_tape.hpp>
+#include <polhode/model/endless.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/stepping/single_step.hpp>
 
@@ -21,6 +22,7 @@ RunTape run_onto_tape(Simulation& simulation) {
   RunTape tape;
   const Model& model = simulation.model();
   const System& system = simulation.system();
+  require_end(model.analysis);
   const double end = model.analysis.duration;
   Method method = choose_method(system, model.analysis);
   const int order = method.control.order;

@@ -7,6 +7,7 @@
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/engines/tree_engine.hpp>
 #include <polhode/engines/unilateral_rows.hpp>
+#include <polhode/model/endless.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
@@ -210,7 +211,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.extrapolated = is_extrapolated(a);
   c.step = a.step;
   c.tolerance = a.tolerance.value_or(kDefaultError);
-  c.horizon = a.duration;
+  c.horizon = is_endless(a) ? kEndlessHorizon : a.duration;
   c.min_step = a.min_step.value_or(0.0);
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;

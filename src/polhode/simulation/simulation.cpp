@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/core/clock.hpp>
+#include <polhode/model/endless.hpp>
 #include <polhode/simulation/finite_functions.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
 #include <polhode/simulation/trust.hpp>
@@ -18,6 +19,8 @@ constexpr double kSameTime = 1e-9;
 /// Length of a step below which its time is taken from the wall clock, which is read ten times as
 /// fast as that of the processor [s].
 constexpr double kShortWork = 1e-4;
+/// Length of a run that has none [s].
+constexpr double kUsualRun = 1.0;
 constexpr const char* kSeeAtStart = "Use a channel that is available at the start";
 
 /// Refuses a start at which a function of time has no value.
@@ -28,8 +31,10 @@ void refuse_infinite_start(const Model& model) {
 
 /// Refuses a start at which a drive has no finite rate.
 void refuse_endless_rate(const Model& model, const System& system) {
+  // Of an endless run, the rate in what a second is to others.
   const NotFinite found =
-      endless_rate_at_start(model, system, system.initial_state(), model.analysis.duration);
+      endless_rate_at_start(model, system, system.initial_state(),
+                            is_endless(model.analysis) ? kUsualRun : model.analysis.duration);
   if (!found.place.empty())
     throw InputError(found.place, found.text, "Begin with a finite rate, as 'smoothstep' does");
 }
@@ -111,6 +116,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
                            const std::function<void(Simulation&)>& on_step,
                            const std::atomic<bool>* stop) {
   Impl& s = *impl_;
+  require_end(s.model.analysis);
   const double end = s.end();
   const bool in_time = !s.statics || s.model.analysis.history;
   const std::optional<double> every = in_time ? s.model.output.every : std::nullopt;

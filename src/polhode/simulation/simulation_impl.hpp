@@ -18,6 +18,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
+#include <polhode/model/endless.hpp>
 #include <polhode/simulation/controllers.hpp>
 #include <polhode/simulation/event_watch.hpp>
 #include <polhode/simulation/held_values.hpp>
@@ -304,7 +305,7 @@ struct Simulation::Impl {
   void refuse_jumps(const std::string& where, const TimeFunction& d, const char* unit) const {
     TimeBreak at;
     for (int k = 0; k < kMaxBreaks; ++k) {
-      at = d.next_break(k == 0 ? state.t : at.t, end());
+      at = d.next_break(k == 0 ? state.t : at.t, std::min(end(), kEndlessHorizon));
       if (!at.exists()) return;
       if (at.derivative > 0) continue;
       const TimeRates before = d.rates(at.t, TimeSide::kBefore),

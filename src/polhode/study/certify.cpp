@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/model/endless.hpp>
 #include <polhode/study/certify.hpp>
 
 #include <algorithm>
@@ -186,6 +187,7 @@ void check_certifiable(const Model& model) {
   if (a.type != "dynamics")
     throw InputError("analysis.type", format("is {}, which takes no steps in time", a.type),
                      "Certify a model of type dynamics; refine a mesh by hand");
+  require_end(a);
   if (!a.step && a.tolerance.value_or(kStandardTolerance) < 99.9 * kMinTolerance)
     throw InputError(
         "analysis.tolerance",

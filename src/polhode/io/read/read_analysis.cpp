@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -83,6 +84,19 @@ void read_spin(ReadContext& context, Section& section, AnalysisSpec& analysis) {
     analysis.spin = std::move(*speeds);
 }
 
+/// Reads the duration: a time, or none for steps without an end.
+void read_duration(Section& section, AnalysisSpec& analysis) {
+  const SourceNode* node = section.find("duration");
+  if (node && node->is_text() && node->text == "none") {
+    analysis.duration = std::numeric_limits<double>::infinity();
+    if (!analysis.step && analysis.type == "dynamics")
+      section.fault("duration", "none requires a fixed step",
+                    "Give a step: automatic steps share their tolerance over the duration.");
+  } else if (const auto time = section.number("duration")) {
+    analysis.duration = *time;
+  }
+}
+
 }  // namespace
 
 void read_analysis(ReadContext& context, const SourceNode& node, const SourceLocation& place) {
@@ -90,7 +104,8 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
   analysis.place = place;
   Section section(context, node, place, "analysis", analysis_fields());
   if (!node.is_map()) return;
-  section.read_into(analysis, {"spin"});
+  section.read_into(analysis, {"spin", "duration"});
+  read_duration(section, analysis);
   read_spin(context, section, analysis);
   check_type(section, analysis.type);
   if (analysis.step && analysis.tolerance)

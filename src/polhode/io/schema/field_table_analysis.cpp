@@ -21,7 +21,8 @@ const FieldTable& analysis_fields() {
           {.name = "duration",
            .kind = kNumber,
            .dimension = kTime,
-           .meaning = "Length of the motion.",
+           .meaning = "Length of the motion, or none: steps without an end, taken by Python or "
+                      "C++; requires a step.",
            .standard = "1",
            .range = kPositive,
            .member = &AnalysisSpec::duration,
