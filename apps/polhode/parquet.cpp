@@ -49,8 +49,8 @@ std::string last_line(const std::string& file) {
 
 }  // namespace
 
-void write_parquet(const io::ResultsReader& results, const std::vector<std::string>& names,
-                   const std::string& file) {
+void write_parquet(const io::ResultsReader& results, const ProbeTables& probes,
+                   const std::vector<std::string>& names, const std::string& file) {
   const char* wanted = std::getenv("POLHODE_PYTHON");
   const std::string python = find_program({wanted == nullptr ? "python3" : wanted});
   const InputError missing(
@@ -59,8 +59,7 @@ void write_parquet(const io::ResultsReader& results, const std::vector<std::stri
              "POLHODE_PYTHON, or write a .csv file",
              python.empty() ? "python3" : python));
   if (python.empty()) throw missing;
-  const std::vector<double> time = results.read(io::results::kTime);
-  const std::vector<ChannelColumn> columns = all_columns(results, names);
+  const auto [none, time, columns] = table_of(results, probes, names);
   io::UnfinishedFile unfinished(file);
   nlohmann::ordered_json head = {
       {"rows", time.size()},

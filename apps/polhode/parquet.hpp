@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/io/results/results_reader.hpp>
+#include <polhode/view/probe_tables.hpp>
 
 namespace polhode::cli {
 
@@ -12,7 +13,7 @@ namespace polhode::cli {
 /// metadata of the columns. Python's pyarrow is used, as a C++ library would add some hundred
 /// megabytes: $POLHODE_PYTHON names the Python, else it is python3.
 /// @param names  As for channels_csv(). @throws FileError, InputError if there is no pyarrow.
-void write_parquet(const io::ResultsReader& results, const std::vector<std::string>& names,
-                   const std::string& file);
+void write_parquet(const io::ResultsReader& results, const ProbeTables& probes,
+                   const std::vector<std::string>& names, const std::string& file);
 
 }  // namespace polhode::cli

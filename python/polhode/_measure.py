@@ -38,18 +38,6 @@ def series(result: Result, channel: str) -> "tuple[Any, Any]":
     """Times and values (T, ...) of a channel, of a probe's column, of the size of a vector as CHANNEL.size, or of one
     of several numbers as CHANNEL.1."""
     above, _, last = channel.rpartition(".")
-    if last == "size" and above:
-        t, vectors = series(result, above)
-        if vectors.ndim != 2:
-            raise KeyError(f"'{above}' is no vector, so it has no size")
-        return t, np.linalg.norm(vectors, axis=1)
-    if channel.startswith("probes."):
-        name, _, column = channel[len("probes."):].rpartition(".")
-        probes = result.probes
-        if name not in probes:
-            near = _native.closest(name, list(probes))
-            raise KeyError(f"there is no probe '{name}'" + (f". Did you mean '{near}'?" if near else ""))
-        return np.asarray(probes[name]["t"]), np.asarray(probes[name][column])
     if last.isdigit() and above:  # a number of the coordinates of a joint
         t, numbers = series(result, above)
         if numbers.ndim != 2 or int(last) >= numbers.shape[1]:
@@ -58,16 +46,11 @@ def series(result: Result, channel: str) -> "tuple[Any, Any]":
     found = result[channel]
     if isinstance(found, Group):
         raise KeyError(f"'{channel}' is a group: name one of its channels: {', '.join(list(found)[:8])}")
-    return np.asarray(result.time), np.asarray(found)
+    return np.asarray(result.times(channel)), np.asarray(found)
 
 
 def unit_of(result: Result, channel: str) -> str:
     """Unit of a channel or of a column of a probe."""
-    if channel.endswith(".size"):
-        return unit_of(result, channel[:-len(".size")])
-    if channel.startswith("probes."):
-        name, _, column = channel[len("probes."):].rpartition(".")
-        return result.probes[name].unit(column)
     above, _, last = channel.rpartition(".")
     return result.unit(above if last.isdigit() else channel)
 

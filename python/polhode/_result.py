@@ -78,7 +78,11 @@ class Group(Mapping):  # type: ignore[type-arg]
 
 
 class Table(Mapping):  # type: ignore[type-arg]
-    """Rows of a probe by column: `r.probes["tip"].z` (T,), SI units, with its own times in `t`."""
+    """Rows of a probe by column: `r.probes["tip"].z` (T,), SI units, with its own times in `t`.
+
+    Three columns of a vector have a length as well, which is computed: r.probes["tip"]["v.size"], "f.size", and
+    "distance" of x, y, z.
+    """
 
     def __init__(self, name: str, header: "list[str]", rows: Any) -> None:
         self.name = name
@@ -87,11 +91,22 @@ class Table(Mapping):  # type: ignore[type-arg]
 
     def __getitem__(self, name: str) -> Any:
         names = list(self._units)
+        if name not in self._units and (parts := self._vector(name)):
+            return np.linalg.norm([self._rows[..., names.index(part)] for part in parts], axis=0)
         if name not in self._units:
             near = _native.closest(name, names)
             hint = f" Did you mean '{near}'?" if near else f" There are: {', '.join(names)}."
             raise KeyError(f"probes.{self.name} has no '{name}'.{hint}")
         return self._rows[..., names.index(name)]
+
+    def _vector(self, name: str) -> "list[str]":
+        """Columns of the vector whose length is named; none if there is no such vector."""
+        head = "" if name == "distance" else name[:-len(".size")] if name.endswith(".size") else None
+        for between in ("", " "):
+            columns = [f"{head}{between}{axis}" for axis in "xyz"]
+            if head is not None and all(column in self._units for column in columns):
+                return columns
+        return []
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -115,7 +130,7 @@ class Table(Mapping):  # type: ignore[type-arg]
 
     def unit(self, name: str) -> str:
         """Unit of a column, such as "m/s"."""
-        return self._units[name]
+        return self._units[(self._vector(name) or [name])[0]]
 
     def __repr__(self) -> str:
         if np.ndim(self._rows) == 1:
@@ -305,9 +320,40 @@ class Result(Differentiable):
 
     def __getitem__(self, channel: str) -> Any:
         """An array or group by its dotted name: r["joints.A.force"]; for vectors and quaternions also a
-        component: r["joints.A.force.z"]. Raises KeyError for an unknown name."""
+        component: r["joints.A.force.z"], for vectors the length: r["joints.A.force.size"]. A column of a probe is
+        r["probes.tip.z"], with its times r.times("probes.tip.z"). Raises KeyError for an unknown name."""
+        if channel.startswith("probes."):
+            table, column = self._probe(channel)
+            return table[column]
+        if vector := self._sized(channel):
+            found = self[vector]
+            if not isinstance(found, np.ndarray) or found.ndim != 2:
+                raise KeyError(f"'{vector}' is no vector, so it has no size")
+            return np.linalg.norm(found, axis=1)
         above, index = self._component(channel)
         return self._resolve(channel)[1] if index < 0 else self._resolve(above)[1][..., index]
+
+    def times(self, channel: str) -> Any:
+        """Times of a channel (T,) [s]: those of the frames, and of a probe's column those of its rows."""
+        return self._probe(channel)[0]["t"] if channel.startswith("probes.") else self.time
+
+    @staticmethod
+    def _sized(channel: str) -> str:
+        """The vector of "joints.A.force.size"; "" of other names."""
+        return channel[:-len(".size")] if channel.endswith(".size") else ""
+
+    def _probe(self, channel: str) -> "tuple[Table, str]":
+        """The table and the column of "probes.tip.z"; names of probes may have points."""
+        tail, probes = channel[len("probes."):], self.probes
+        fitting = [name for name in probes if tail.startswith(name + ".")]
+        if not fitting:
+            name = tail.partition(".")[0]
+            near = _native.closest(name, list(probes))
+            if name in probes:
+                raise KeyError(f"'{channel}' is a probe: name one of its columns: {', '.join(probes[name])}")
+            raise KeyError(f"there is no probe '{name}'" + (f". Did you mean '{near}'?" if near else ""))
+        name = max(fitting, key=len)
+        return probes[name], tail[len(name) + 1:]
 
     def _component(self, channel: str) -> "tuple[str, int]":
         """The vector or quaternion of a component, and the component's index; the channel and -1 otherwise."""
@@ -321,6 +367,10 @@ class Result(Differentiable):
 
     def unit(self, channel: str) -> str:
         """Unit of a channel: r.unit("bodies.crank.velocity") is "m/s"."""
+        if channel.startswith("probes."):
+            table, column = self._probe(channel)
+            return table.unit(column)
+        channel = self._sized(channel) or channel
         path = self._resolve(self._component(channel)[0])[0]
         above, _, name = path.rpartition("/")
         if name in self._children().get(above, ()):
@@ -412,7 +462,7 @@ class Result(Differentiable):
                 array = np.asarray(self[part])
                 flat = array.reshape(len(array), -1)
                 for k, label in enumerate(_components(array.shape[1:])):
-                    panel.plot(self.time, flat[:, k], label=(part[len(name) + 1 :] + label).lstrip(".") or None)
+                    panel.plot(self.times(part), flat[:, k], label=(part[len(name) + 1 :] + label).lstrip(".") or None)
             panel.set_ylabel(f"{name} [{self.unit(parts[0])}]")
             if panel.get_legend_handles_labels()[0]:
                 panel.legend(loc="best", fontsize="small")

@@ -43,6 +43,19 @@ def test_measures_of_a_throw_are_its_closed_forms(step: str, order: float) -> No
     assert of("first(bodies.ball.velocity.z < 0)") == pytest.approx(v / g, abs=1e-12)
     assert math.isnan(of(f"first({z} > 3)")) and math.isnan(of(f"at({z}, 0.6)")) and math.isnan(of(f"at({z}, -1)"))
     assert of(f"first({z} > 0.5)") == 0
+    speed = r["bodies.ball.velocity.size"]
+    assert of("final(probes.ball.v.size)") == pytest.approx(speed[-1], abs=1e-12) == of("final(bodies.ball.velocity.size)")
+    assert r["probes.ball.v.size"] == pytest.approx(np.hypot(r["probes.ball.vx"], r["probes.ball.vz"]), abs=1e-12)
+    assert r.unit("probes.ball.v.size") == r.unit("bodies.ball.velocity.size") == "m/s"
+    assert r.probes["ball"]["distance"][0] == pytest.approx(1) and r.unit("probes.ball.distance") == "m"
+    assert np.array_equal(r.times("probes.ball.z"), r.probes["ball"].t) and np.array_equal(r.times("energy.total"), r.time)
+    figure = r.plot("probes.ball.v.size", "bodies.ball.velocity.size")
+    assert [panel.get_ylabel() for panel in figure.axes] == [
+        "probes.ball.v.size [m/s]", "bodies.ball.velocity.size [m/s]"]
+    for text, message in (("max(probes.ball)", "is a probe: name one of its columns: t, x, y"),
+                          ("max(probes.ball.q.size)", "has no 'q.size'")):
+        with pytest.raises(KeyError, match=message):
+            of(text)
     assert of("mean(probes.ball.z)") == pytest.approx(of(f"mean({z})"), abs=1e-12)
     assert measure(r, "max(bodies.ball.position)").keys() == {f"max(bodies.ball.position.{c})" for c in "xyz"}
 

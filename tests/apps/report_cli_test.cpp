@@ -81,6 +81,31 @@ TEST_F(ReportCommand, WritesMarkdownWithPictures) {
               HasSubstr("'.pdf' is no kind of report. Name a file that ends with .html"));
 }
 
+/// A bar swings in the plane x, z and falls onto the stop of its hinge after 0.5 s: rows of
+/// impulses are those of the run with the stop, and what is noise across the plane is 0.
+TEST_F(ReportCommand, LeavesOutImpulsesThatThereAreNot) {
+  const std::string bar = R"(format: 1
+gravity: [0, 0, -9.81]
+bodies: {bar: {shape: {box: [1, 0.1, 0.1]}, density: 1000, position: [0.5, 0, 0]}}
+joints: {hinge: {type: revolute, bodies: [ground, bar], at: [0, 0, 0], axis: y, LIMITS}}
+analysis: {duration: 1 s, step: 5 ms}
+output: {probes: {hinge: {joint: hinge}}}
+)";
+  for (const bool stop : {false, true}) {
+    std::string text = bar;
+    text.replace(text.find(", LIMITS"), 8,
+                 stop ? ", limits: {upper: 60 deg, restitution: 0.2}" : "");
+    write("bar.yaml", text);
+    ASSERT_EQ(run({"run", "bar.yaml", "--quiet", "-o", "out"}).code, 0);
+    ASSERT_EQ(run({"report", "out", "--no-picture", "-o", "bar.md"}).code, 0);
+    const std::string page = read("bar.md");
+    const std::string tables = page.substr(0, page.find("## Model"));
+    EXPECT_EQ(tables.find("impulse") != std::string::npos, stop);
+    EXPECT_THAT(tables, HasSubstr("| joints.hinge.force.size | N |"));
+    EXPECT_THAT(tables, Not(testing::ContainsRegex("e-[1-3][0-9][0-9]")));
+  }
+}
+
 /// A run with long steps, whose kinematic momentum rate does not conserve energy, is not trusted:
 /// the report says so and why, and gives the other warnings apart.
 TEST_F(ReportCommand, SaysWhenARunIsNotTrusted) {

@@ -33,6 +33,10 @@ loads:
   spring: {type: spring_damper, bodies: [ground, arm], at: [[1, 0, 1], [1, 0, 0]], stiffness: 100, damping: 1}
 contacts: {exclude: [[stone, arm]]}
 analysis: {duration: 0.1 s, step: 10 ms}
+output:
+  probes:
+    end: {body: arm, point: [0.5, 0, 0], every: 10 ms}
+    slow: {joint: hinge, every: 50 ms}
 )";
 
 class ChannelsTest : public testing::Test {
@@ -41,7 +45,9 @@ class ChannelsTest : public testing::Test {
     Simulation simulation(io::read_model_text(kModel, "model.yaml"));
     io::Recorder recorder(simulation, folder_ / "r",
                           {.model_file = "model.yaml", .model_text = kModel});
-    simulation.run([&](Simulation& s) { recorder.frame(s); }, [](Simulation&) {});
+    recorder.step(simulation);
+    simulation.run([&](Simulation& s) { recorder.frame(s); },
+                   [&](Simulation& s) { recorder.step(s); });
     recorder.frame(simulation);
     recorder.close();
   }
@@ -104,6 +110,61 @@ TEST_F(ChannelsTest, TheLengthOfASpringIsThatBetweenItsEnds) {
     EXPECT_NEAR(length[k], std::hypot(1.0 - std::cos(angle[k]), 1.0 + std::sin(angle[k])), 1e-12);
 }
 
+// The end of the arm is 1 m from the hinge and moves at the rate of its angle; the force of the
+// hinge has one size in a table of frames, in that of its probe, and from its components.
+TEST_F(ChannelsTest, VectorsHaveASizeAndProbesHaveColumns) {
+  const io::ResultsReader r = results();
+  const ProbeTables probes(folder_ / "r/results.h5");
+  EXPECT_THAT(probes.names(), ElementsAre("end", "slow"));
+  const ReportTable table =
+      table_of(r, probes,
+               {"probes.end.v.size", "joints.hinge.rates", "bodies.arm.velocity.size",
+                "probes.end.distance", "probes.end.x"});
+  ASSERT_EQ(table.columns.size(), 5U);
+  EXPECT_EQ(table.columns[0].name, "probes.end.v.size");
+  EXPECT_EQ(table.columns[2].name, "bodies.arm.velocity.size");
+  EXPECT_EQ(table.columns[2].unit, "m/s");
+  ASSERT_EQ(table.t.size(), 11U);
+  for (std::size_t k = 0; k < 11; ++k) {
+    const double rate = std::abs(table.columns[1].values[k]);
+    EXPECT_NEAR(table.columns[0].values[k], rate, 1e-12);
+    EXPECT_NEAR(table.columns[2].values[k], 0.5 * rate, 1e-12);
+    EXPECT_NEAR(table.columns[3].values[k], 1.0, 1e-12);
+  }
+  const ReportTable slow = table_of(r, probes, {"probes.slow.f.size"});
+  EXPECT_EQ(slow.t.size(), 3U);
+  const auto force = channel_columns(r, "joints.hinge.force.size")[0].values;
+  EXPECT_NEAR(slow.columns[0].values[2], force[10], 1e-12);
+  EXPECT_EQ(channel_columns(r, "bodies.arm.angular_velocity_body.size").size(), 1U);
+  EXPECT_THAT(channel_names(r, probes), testing::Contains("probes.slow.rate rz"));
+  const std::string svg =
+      channels_svg(r, probes, {"probes.end.v.size", "joints.hinge.force.size"}, "t [s]");
+  EXPECT_THAT(svg, HasSubstr("probes.end.v.size [m/s]"));
+  EXPECT_THAT(svg, testing::Not(HasSubstr("probes.end.v.size<")));  // one curve needs no legend
+  EXPECT_THAT(svg, HasSubstr("joints.hinge.force.size [N]"));
+
+  const auto refused = [&](const std::vector<std::string>& names) -> std::string {
+    try {
+      (void)channels_csv(r, probes, names);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_THAT(refused({"probes.end.x", "probes.slow.fx"}),
+              HasSubstr("'probes.slow.fx' has other times than 'probes.end.x'"));
+  EXPECT_THAT(refused({"probes.edn.x"}),
+              HasSubstr("there is no 'probes.edn.x'. Did you mean 'end'"));
+  EXPECT_THAT(refused({"probes.end.q"}), HasSubstr("probe 'end' has no column 'q'"));
+  EXPECT_THAT(refused({"energy.kinetic.size"}), HasSubstr("there is no 'energy.kinetic.size'"));
+  try {
+    (void)table_of(r, {}, {"probes.end.x"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("There are no tables of probes beside the results"));
+  }
+}
+
 TEST_F(ChannelsTest, SuggestsTheNearestName) {
   try {
     (void)names("bodies.amr.position");
@@ -116,7 +177,7 @@ TEST_F(ChannelsTest, SuggestsTheNearestName) {
 
 TEST_F(ChannelsTest, ATableReadsBackExactly) {
   const io::ResultsReader r = results();
-  std::istringstream table(channels_csv(r, {"energy.kinetic"}));
+  std::istringstream table(channels_csv(r, {}, {"energy.kinetic"}));
   std::string line;
   std::getline(table, line);
   EXPECT_EQ(line, "t [s],energy.kinetic [J]");
@@ -125,12 +186,12 @@ TEST_F(ChannelsTest, ATableReadsBackExactly) {
     std::getline(table, line);
     EXPECT_EQ(std::stod(line.substr(line.find(',') + 1)), expected);
   }
-  EXPECT_THAT(channels_csv(r, {}), HasSubstr("joints.hinge.moment.y [N m]"));
+  EXPECT_THAT(channels_csv(r, {}, {}), HasSubstr("joints.hinge.moment.y [N m]"));
 }
 
 TEST_F(ChannelsTest, APictureHasACurveForEachColumn) {
   const std::string svg =
-      channels_svg(results(), {"bodies.arm.position", "energy.kinetic"}, "t [s]");
+      channels_svg(results(), {}, {"bodies.arm.position", "energy.kinetic"}, "t [s]");
   EXPECT_THAT(svg, HasSubstr("<svg"));
   EXPECT_THAT(svg, HasSubstr("bodies.arm.position [m]"));
   std::size_t curves = 0;
@@ -138,7 +199,7 @@ TEST_F(ChannelsTest, APictureHasACurveForEachColumn) {
     curves += svg.find(colour) != std::string::npos ? 1 : 0;
   EXPECT_EQ(curves, 3U);
   try {
-    (void)channels_svg(results(), {"bodies"}, "t [s]");
+    (void)channels_svg(results(), {}, {"bodies"}, "t [s]");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("curves. Name a part of it, at most eight curves go into a "

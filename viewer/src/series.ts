@@ -6,6 +6,8 @@ export interface Series { name: string; unit: string; values: Float64Array }
 
 const kComponents: Record<number, string[]> = { 3: ["x", "y", "z"], 4: ["w", "x", "y", "z"], 6: ["xx", "yy", "zz", "xy", "yz", "xz"] };
 const kBody = ["position", "velocity", "angular_velocity", "orientation"];
+/** Angular velocity of a body along its own axes, which is computed from that of the world and the orientation. */
+const kOwnSpin = "angular_velocity_body";
 const kJoint = ["force", "moment", "coordinates", "rates"];
 /** Free coordinates of joints: translations and rotations, in their order. */
 export const kFreedoms: Record<string, string> = { revolute: "R", prismatic: "T", cylindrical: "TR", universal: "RR", constant_velocity: "RR", spherical: "RRR", planar: "TTR", point_in_plane: "TTRRR",
@@ -88,8 +90,26 @@ function find(scene: Scene, name: string): { found: Found; rest: string; head: s
   return null;
 }
 
+/** Components of a vector (x, y, z) turned by the inverse of a unit quaternion (w, x, y, z). */
+function turnedBack([w, a, b, c]: number[], [x, y, z]: number[]): number[] {
+  const u = b * z - c * y, v = c * x - a * z, k = a * y - b * x;
+  return [x - 2 * w * u + 2 * (b * k - c * v), y - 2 * w * v + 2 * (c * u - a * k), z - 2 * w * k + 2 * (a * v - b * u)];
+}
+
+/** Series of an angular velocity along the axes of its body, all components, one, or its size. */
+async function ownSpin(scene: Scene, name: string): Promise<Series[]> {
+  const at = name.lastIndexOf("." + kOwnSpin), body = name.slice(0, at), rest = name.slice(at + kOwnSpin.length + 2);
+  const spin = await seriesOf(scene, `${body}.angular_velocity`), turn = await seriesOf(scene, `${body}.orientation`);
+  if (spin.length !== 3 || turn.length !== 4) return [];
+  const head = `${body}.${kOwnSpin}`, own = ["x", "y", "z"].map((c) => ({ name: `${head}.${c}`, unit: spin[0].unit, values: new Float64Array(scene.manifest.frames) }));
+  for (let f = 0; f < scene.manifest.frames; f++) turnedBack(turn.map((q) => q.values[f]), spin.map((w) => w.values[f])).forEach((value, k) => { own[k].values[f] = value; });
+  if (rest === "size") return [{ name: `${head}.size`, unit: spin[0].unit, values: own[0].values.map((x, f) => Math.hypot(x, own[1].values[f], own[2].values[f])) }];
+  return rest ? own.filter((series) => series.name === `${head}.${rest}`) : own;
+}
+
 /** Series of a name. Without a component: all of them, of long lists the first eight. */
 export async function seriesOf(scene: Scene, name: string): Promise<Series[]> {
+  if (/^bodies\..*\.angular_velocity_body(\.|$)/.test(name.trim())) return ownSpin(scene, name.trim());
   const place = find(scene, name.trim());
   if (!place) return [];
   const { found, rest, head } = place;
@@ -118,7 +138,7 @@ export function resampled(series: Series, from: number[], to: number[]): Series 
 
 /** Quantities of one object, for its list of values. */
 export function quantitiesOf(scene: Scene, kind: string, name: string): string[] {
-  if (kind === "body") return kBody.map((q) => `bodies.${name}.${q}`);
+  if (kind === "body") return [...kBody, kOwnSpin].map((q) => `bodies.${name}.${q}`);
   if (kind === "joint") {
     const joint = scene.manifest.joints.find((j) => j.name === name);
     return kJoint.filter((q) => joint?.count || q === "force" || q === "moment").map((q) => `joints.${name}.${q}`);

@@ -22,9 +22,16 @@ analysis: {duration: 1 s, step: 2 ms}
 output: {every: 10 ms}
 `;
 
+// A tumbling block: its own axes and those of the world differ.
+const tumble = `format: 1
+bodies: {block: {shape: {box: [1, 0.6, 0.2]}, density: 1000, angular_velocity: [0.3, 4, 0.2]}}
+analysis: {duration: 4 s, step: 10 ms, order: 4}
+output: {every: 20 ms}
+`;
+
 /** A page with a plot of some channels. */
 async function plotted(name, ...list) {
-  for (const [own, text] of Object.entries({ tone, swing })) if (name === `${own}.html` && !existsSync(join(folder, name))) recorded(own, text);
+  for (const [own, text] of Object.entries({ tone, swing, tumble })) if (name === `${own}.html` && !existsSync(join(folder, name))) recorded(own, text);
   const { page } = await page_of(name);
   await page.getByRole("tab", { name: "Plot" }).click();
   for (const [k, channel] of list.entries()) {
@@ -97,6 +104,15 @@ await test("a drag zooms a plot; two clicks, or a button, show all of it again",
   await zoom();
   await page.getByRole("button", { name: "Whole range" }).click();
   await all();
+});
+
+await test("an angular velocity along the axes of its body, and its size, are those of the tables", async () => {
+  const page = await plotted("tumble.html", "bodies.block.angular_velocity_body", "bodies.block.angular_velocity_body.size");
+  await page.waitForFunction(() => document.querySelectorAll(".series li").length === 4);
+  const rows = table(await saved(page, "CSV")), own = channels("tumble", "bodies.block.angular_velocity_body", "bodies.block.angular_velocity_body.size"), world = channels("tumble", "bodies.block.angular_velocity");
+  expect(rows.length === own.length && own[0].length === 5, `${rows.length} rows of ${own[0].length} numbers`);
+  rows.forEach((row, k) => own[k].forEach((value, i) => within(row[i], value, 1e-5, `row ${k}, column ${i}`)));
+  expect(own.some((row, k) => Math.abs(row[1] - world[k][1]) > 3), "both axes give the same, so that the test says little");
 });
 
 await test("the ledger stacks the energies, and its upper edge is constant as energy is conserved", async () => {

@@ -29,11 +29,14 @@ struct ConvertOptions {
 };
 
 void write_table(const ConvertOptions& options, const std::string& ending) {
-  const io::ResultsReader results = open_results(results_path(options.film.results));
+  const std::string path = results_path(options.film.results);
+  const io::ResultsReader results = open_results(path);
+  const ProbeTables probes(path);
   if (ending == ".csv")
-    io::write_file_atomically(options.film.output, channels_csv(results, options.channels), false);
+    io::write_file_atomically(options.film.output, channels_csv(results, probes, options.channels),
+                              false);
   else
-    write_parquet(results, options.channels, options.film.output);
+    write_parquet(results, probes, options.channels, options.film.output);
 }
 
 void write_grids(const ConvertOptions& options) {

@@ -26,19 +26,21 @@ Action add_plot(CLI::App& command) {
       ->required();
   command.add_option(
       "CHANNEL", options->channels,
-      "energy, bodies.NAME.position.x, joints.NAME.force, ...; left out: lists them");
+      "energy, bodies.NAME.position.x, joints.NAME.force.size, probes.NAME.COLUMN, ...; left out: "
+      "lists them");
   command.add_option("-o,--output", options->output, "SVG file; left out: plot.svg")
       ->type_name("FILE");
   return [options] {
     const std::string path = results_path(options->results);
     const io::ResultsReader results = open_results(path);
+    const ProbeTables probes(path);
     if (options->channels.empty()) {
-      for (const std::string& name : channel_names(results)) print(name + "\n");
+      for (const std::string& name : channel_names(results, probes)) print(name + "\n");
       return static_cast<int>(kOk);
     }
     const std::string file = options->output.empty() ? "plot.svg" : options->output;
     io::write_file_atomically(
-        file, channels_svg(results, options->channels, time_label(results, path)), false);
+        file, channels_svg(results, probes, options->channels, time_label(results, path)), false);
     say(format("{}: {} frames.", file, results.frames()));
     return static_cast<int>(kOk);
   };

@@ -31,6 +31,8 @@ struct Slice {
 
 /// Most coordinates of a joint.
 constexpr std::int64_t kMostCoordinates = 6;
+/// Names of channels end with it for the length of a vector, and begin with it for a probe.
+constexpr std::string_view kSize = ".size", kProbes = "probes.";
 
 std::vector<std::string> labels_of(std::size_t size) {
   if (size == 1) return {""};
@@ -151,17 +153,29 @@ class Columns {
         if (whole || full_name(slice, k) == name)
           found.push_back({full_name(slice, k), slice.unit, column(slice, k)});
     }
+    if (found.empty() && name.ends_with(kSize)) found = size_of(name);
     if (!found.empty()) return found;
     std::vector<std::string> names;
     for (const auto* list : {&slices_, &derived_})
       for (const Slice& slice : *list) names.push_back(slice.head);
     throw InputError("channel", format("there is no '{}'", name),
                      did_you_mean(name, names) +
-                         "Channels are named like energy.kinetic or bodies.NAME.position.x");
+                         "Channels are named like energy.kinetic, bodies.NAME.position.x, "
+                         "joints.NAME.force.size or probes.NAME.COLUMN");
   }
   [[nodiscard]] const std::vector<Slice>& slices() const { return slices_; }
 
  private:
+  /// Length of a vector, VECTOR.size.
+  std::vector<ChannelColumn> size_of(const std::string& name) {
+    const std::string vector = name.substr(0, name.size() - kSize.size());
+    for (const auto* list : {&slices_, &derived_})
+      for (const Slice& slice : *list)
+        if (slice.head == vector && slice.labels == labels_of(3))
+          return {with_sizes(find(vector)).back()};
+    return {};
+  }
+
   std::vector<double> column(const Slice& slice, std::size_t k) {
     auto [entry, fresh] = read_.try_emplace(slice.path);
     if (fresh) entry->second = results_.read(slice.path);
@@ -195,6 +209,36 @@ class Columns {
   std::map<std::string, std::vector<double>> read_;
 };
 
+/// Columns of a probe, all of them or one, with their full names.
+ReportTable probe_columns(const ProbeTables& probes, const std::string& name) {
+  const std::string tail = name.substr(kProbes.size());
+  std::string probe;  // names may contain dots: the longest one that fits
+  for (const std::string& n : probes.names())
+    if ((tail == n || tail.starts_with(n + ".")) && n.size() > probe.size()) probe = n;
+  if (probe.empty())
+    throw InputError("channel", format("there is no '{}'", name),
+                     probes.names().empty()
+                         ? "There are no tables of probes beside the results: give the model "
+                           "probes in output, and run it into a folder"
+                         : did_you_mean(tail.substr(0, tail.find('.')), probes.names()) +
+                               "Columns of probes are named probes.NAME.COLUMN");
+  ReportTable table = probes.read(probe);
+  const std::string column = tail == probe ? "" : tail.substr(probe.size() + 1);
+  std::vector<ChannelColumn> wanted;
+  std::vector<std::string> names;
+  for (ChannelColumn& c : column.empty() ? table.columns : with_sizes(table.columns)) {
+    names.push_back(c.name);
+    if (!column.empty() && c.name != column) continue;
+    c.name = format("{}{}.{}", kProbes, probe, c.name);
+    wanted.push_back(std::move(c));
+  }
+  if (wanted.empty())
+    throw InputError("channel", format("probe '{}' has no column '{}'", probe, column),
+                     did_you_mean(column, names) + format("It has {}", name_list(names, 12)));
+  table.columns = std::move(wanted);
+  return table;
+}
+
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string result = "\"";
@@ -212,30 +256,49 @@ std::vector<ChannelColumn> channel_columns(const io::ResultsReader& results,
   return Columns(results).find(name);
 }
 
-std::vector<ChannelColumn> all_columns(const io::ResultsReader& results,
-                                       const std::vector<std::string>& names) {
+std::vector<ChannelColumn> all_columns(const io::ResultsReader& results) {
   Columns all(results);
   std::vector<ChannelColumn> columns;
-  if (names.empty())
-    for (const Slice& slice : all.slices())
-      for (ChannelColumn& c : all.find(slice.head)) columns.push_back(std::move(c));
-  for (const std::string& name : names)
-    for (ChannelColumn& c : all.find(name)) columns.push_back(std::move(c));
+  for (const Slice& slice : all.slices())
+    for (ChannelColumn& c : all.find(slice.head)) columns.push_back(std::move(c));
   return columns;
 }
 
-std::vector<std::string> channel_names(const io::ResultsReader& results) {
+ReportTable table_of(const io::ResultsReader& results, const ProbeTables& probes,
+                     const std::vector<std::string>& names) {
+  const std::vector<double> frames = results.read(io::results::kTime);
+  if (names.empty()) return {"", frames, all_columns(results)};
+  Columns all(results);
+  ReportTable table;
+  for (const std::string& name : names) {
+    ReportTable part = name.starts_with(kProbes) ? probe_columns(probes, name)
+                                                 : ReportTable{"", frames, all.find(name)};
+    if (!table.columns.empty() && part.t != table.t)
+      throw InputError("channel",
+                       format("'{}' has other times than '{}'", name, table.columns.front().name),
+                       "Write them into tables of their own, or give probes the 'every' of output");
+    table.t = std::move(part.t);
+    for (ChannelColumn& c : part.columns) table.columns.push_back(std::move(c));
+  }
+  return table;
+}
+
+std::vector<std::string> channel_names(const io::ResultsReader& results,
+                                       const ProbeTables& probes) {
   std::vector<std::string> names;
   for (const Slice& slice : slices_of(results)) names.push_back(slice.head);
+  for (const std::string& probe : probes.names())
+    for (const ChannelColumn& c : probes.read(probe).columns)
+      names.push_back(format("{}{}.{}", kProbes, probe, c.name));
   return names;
 }
 
-std::string channels_csv(const io::ResultsReader& results, const std::vector<std::string>& names) {
-  const std::vector<ChannelColumn> columns = all_columns(results, names);
+std::string channels_csv(const io::ResultsReader& results, const ProbeTables& probes,
+                         const std::vector<std::string>& names) {
+  const auto [none, t, columns] = table_of(results, probes, names);
   std::string text = "t [s]";
   for (const ChannelColumn& c : columns) text += "," + quoted(format("{} [{}]", c.name, c.unit));
   text += "\n";
-  const std::vector<double> t = results.read(io::results::kTime);
   for (std::size_t f = 0; f < t.size(); ++f) {
     text += format("{}", t[f]);
     for (const ChannelColumn& c : columns) text += format(",{}", c.values[f]);
@@ -272,6 +335,7 @@ std::string panels_svg(const std::vector<CurvePanel>& panels, const std::string&
                        format("{} [{}]", name, units));
     for (std::size_t i = 0; i < curves.columns.size(); ++i) {
       panel.curve(t, curves.columns[i].values, kColours[i]);
+      if (curves.columns[i].name == name) continue;  // the title says it
       const double line = y + 10.0 + 18.0 * static_cast<double>(i);
       content += format(
           "<line x1=\"{0}\" y1=\"{1}\" x2=\"{2}\" y2=\"{1}\" stroke=\"{3}\" stroke-width=\"2\"/>\n",
@@ -287,12 +351,19 @@ std::string panels_svg(const std::vector<CurvePanel>& panels, const std::string&
   return io::svg_page(kWidth, y, content);
 }
 
-std::string channels_svg(const io::ResultsReader& results, const std::vector<std::string>& names,
-                         const std::string& time_label) {
+std::string channels_svg(const io::ResultsReader& results, const ProbeTables& probes,
+                         const std::vector<std::string>& names, const std::string& time_label) {
   Columns all(results);
   const std::vector<double> t = results.read(io::results::kTime);
   std::vector<CurvePanel> panels;
-  for (const std::string& name : names) panels.push_back({name, t, all.find(name)});
+  for (const std::string& name : names) {
+    if (!name.starts_with(kProbes)) {
+      panels.push_back({name, t, all.find(name)});
+      continue;
+    }
+    ReportTable probe = probe_columns(probes, name);
+    panels.push_back({name, std::move(probe.t), std::move(probe.columns)});
+  }
   return panels_svg(panels, time_label);
 }
 

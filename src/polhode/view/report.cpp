@@ -35,7 +35,18 @@ struct Draft {
   std::vector<std::pair<std::string, std::string>> plots;  ///< Names and SVG pictures.
 };
 
-std::string number(double value) { return std::isfinite(value) ? format("{:.5g}", value) : "-"; }
+/// Numbers below are noise of sums that vanish [-].
+constexpr double kNoise = 1e-30;
+
+std::string number(double value) {
+  return !std::isfinite(value) ? "-" : format("{:.5g}", std::abs(value) < kNoise ? 0.0 : value);
+}
+
+/// Whether a column holds impulses of which there were none.
+bool without_impulse(const ChannelColumn& column) {
+  return column.name.find("impulse") != std::string::npos &&
+         std::all_of(column.values.begin(), column.values.end(), [](double v) { return v == 0.0; });
+}
 
 std::vector<std::string> row_of(const std::vector<double>& t, const ChannelColumn& column) {
   const Extremes e = extremes_of(t, column.values);
@@ -117,6 +128,7 @@ Draft draft_of(const io::ResultsReader& results, const ReportRequest& request) {
   Table probes = extremes_table("Probes", request.time_label);
   for (const ReportTable& probe : request.probes) {
     for (ChannelColumn& column : with_sizes(probe.columns)) {
+      if (without_impulse(column)) continue;
       column.name = probe.name + "." + column.name;
       probes.rows.push_back(row_of(probe.t, column));
     }
@@ -129,11 +141,12 @@ Draft draft_of(const io::ResultsReader& results, const ReportRequest& request) {
   const std::vector<double> t = results.read(io::results::kTime);
   const std::vector<std::pair<const char*, const char*>> parts = {
       {"joints.", "Joints"}, {"loads.", "Loads"}, {"contacts.", "Contacts"}, {"energy.", "Energy"}};
-  const std::vector<ChannelColumn> columns = with_sizes(all_columns(results, {}));
+  const std::vector<ChannelColumn> columns = with_sizes(all_columns(results));
   for (const auto& [head, title] : parts) {
     Table table = extremes_table(title, request.time_label);
     for (const ChannelColumn& column : columns)
-      if (column.name.starts_with(head)) table.rows.push_back(row_of(t, column));
+      if (column.name.starts_with(head) && !without_impulse(column))
+        table.rows.push_back(row_of(t, column));
     if (!table.rows.empty()) draft.tables.push_back(std::move(table));
   }
   CurvePanel energy{"energy", t, {}};
@@ -224,24 +237,6 @@ Extremes extremes_of(const std::vector<double>& t, const std::vector<double>& va
   e.mean = length > 0.0 ? sum / length : e.least;
   e.rms = length > 0.0 ? std::sqrt(squares / length) : std::abs(e.least);
   return e;
-}
-
-std::vector<ChannelColumn> with_sizes(const std::vector<ChannelColumn>& columns) {
-  std::vector<ChannelColumn> all;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    all.push_back(columns[k]);
-    if (k < 2 || !columns[k].name.ends_with('z')) continue;
-    const ChannelColumn &x = columns[k - 2], &y = columns[k - 1], &z = columns[k];
-    std::string head = z.name.substr(0, z.name.size() - 1);
-    if (x.name != head + "x" || y.name != head + "y" || x.unit != z.unit || y.unit != z.unit)
-      continue;
-    while (head.ends_with('.') || head.ends_with(' ')) head.pop_back();
-    ChannelColumn size{head.empty() ? "distance" : head + ".size", z.unit, {}};
-    for (std::size_t i = 0; i < z.values.size(); ++i)
-      size.values.push_back(std::hypot(x.values[i], y.values[i], z.values[i]));
-    all.push_back(std::move(size));
-  }
-  return all;
 }
 
 std::string report_page(const io::ResultsReader& results, const ReportRequest& request) {

@@ -21,23 +21,12 @@ struct Extremes {
 /// @param t  Times, ascending. @param values  As many.
 [[nodiscard]] Extremes extremes_of(const std::vector<double>& t, const std::vector<double>& values);
 
-/// Columns over time with a name, such as those of a probe.
-struct ReportTable {
-  std::string name;
-  std::vector<double> t;
-  std::vector<ChannelColumn> columns;
-};
-
 /// Contents of a report besides those of the results.
 struct ReportRequest {
   std::vector<ReportTable> probes;
   std::string picture;  ///< Of the model, PNG; empty: none.
   std::string time_label = "t [s]";
 };
-
-/// Sizes of the vectors among columns, which have names that end with x, y and z: one column each,
-/// behind its components.
-[[nodiscard]] std::vector<ChannelColumn> with_sizes(const std::vector<ChannelColumn>& columns);
 
 /// Report of a run: whether it is trusted, its ledger, a picture, extremes and plots of probes,
 /// extremes of joints, loads and contacts, versions, and the model's text. One page that needs no
