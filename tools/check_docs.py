@@ -26,6 +26,8 @@ KIND_FILES = {
 }
 # Loads on solids have .name = "name" in their own files and are on the page of the loads on bodies.
 SOLID_LOADS = "src/polhode/solids/loads"
+JOINT_LOADS = "src/polhode/io/schema/field_table.hpp"  # plain names of motors and dampers
+JOINT_LOAD = re.compile(r'kJoint(?:Moment|Force) = "(\w+)"')
 SOLID_LOAD = re.compile(r'\{\.name = "(\w+)"')
 KIND = re.compile(r'^ {6}(?:(?:\{|inerter_kind\()"(?=\w+",))?(\w+)(?:",|_kind\(\),)', re.M)
 OWN_KIND = re.compile(r'\bkKind = "(\w+)"')
@@ -68,6 +70,7 @@ def check_kinds(problems):
         found[folder] = ({kind for text in texts for kind in OWN_KIND.findall(text)}, page)
     for path in (ROOT / SOLID_LOADS).glob("*.hpp"):
         found["src/polhode/loads/registry.cpp"][0].update(SOLID_LOAD.findall(path.read_text()))
+    found["src/polhode/loads/registry.cpp"][0].update(JOINT_LOAD.findall((ROOT / JOINT_LOADS).read_text()))
     for registry, (registered, page) in found.items():
         text = (ROOT / page).read_text() if (ROOT / page).exists() else ""
         rows = re.findall(r"^\|\s*`?(\w+)`?\s*\|", text, re.M)

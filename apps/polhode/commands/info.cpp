@@ -7,8 +7,10 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/shapes.hpp>
+#include <polhode/io/schema/field_table.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/model/endless.hpp>
 #include <polhode/solids/elements/registry.hpp>
 #include <polhode/solids/loads/registry.hpp>
 #include <polhode/solids/materials/registry.hpp>
@@ -57,6 +59,13 @@ std::vector<KindLine> kind_lines(const std::string& kinds) {
       for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
       lines.push_back(std::move(line));
     }
+  if (kinds == "loads")
+    for (const io::KindTable& kind : io::load_tables())
+      if (kind.name == io::kJointMoment || kind.name == io::kJointForce)
+        lines.push_back({kind.name,
+                         kind.table.meaning.substr(0, kind.table.meaning.size() - 1),
+                         "",
+                         {kind.name == io::kJointMoment ? "moment" : "force", "resistance"}});
   if (kinds == "loads")
     for (const solids::SolidLoadKind& kind : solids::solid_load_kinds()) {
       KindLine line{kind.name, kind.meaning, "", {}};
@@ -159,7 +168,9 @@ std::string describe(const Simulation& simulation) {
               format("{:.6g} kg together", mass)},
              {"constraint rows", format("{}", simulation.system().rows())},
              {"contact", contact_text(simulation)},
-             {"analysis", model.analysis.type, format("{:.6g} s", model.analysis.duration)},
+             {"analysis", model.analysis.type,
+              is_endless(model.analysis) ? "without an end"
+                                         : format("{:.6g} s", model.analysis.duration)},
              {"solver", summary.solver, summary.instruction_set},
              {"order", format("{}", summary.order)}},
             "", false);

@@ -50,7 +50,9 @@ class LoadReader {
         section_(context, node, load.place, "loads." + load.name, table) {}
 
   void read() {
-    if (table_.find("solid")) {
+    if (load_.type == kJointMoment || load_.type == kJointForce) {
+      read_on_joint(load_.type == kJointMoment);
+    } else if (table_.find("solid")) {
       read_on_solid(solids::solid_load_kind(section_.path("type"), load_.type));
     } else {
       read_on_bodies(load_kind(load_.type));
@@ -129,6 +131,29 @@ class LoadReader {
     read_drive(kind);
     read_laws(kind);
     require_effect(kind);
+  }
+
+  /// A moment or force along a coordinate of a joint: over time that of a motor, over the rate that
+  /// of a damper.
+  void read_on_joint(bool turns) {
+    load_.joint = read_joint("joint", section_.find("joint"), &load_.a, &load_.b);
+    read_stays();
+    if (const auto coordinate = section_.choice("coordinate")) load_.coordinate = *coordinate;
+    const std::string value = turns ? "moment" : "force";
+    section_.refuse_both(value.c_str(), "resistance", "Make two loads of them.");
+    if (section_.misses(value) && section_.misses("resistance"))
+      section_.fault(format("has neither {} nor resistance", value), "Give one of them.");
+    if (!section_.has("resistance")) {
+      load_.type = turns ? "rotary_motor" : "linear_motor";
+      load_.drive = value;
+      load_.value = section_.time_number(value);
+      return;
+    }
+    load_.type = turns ? "torsional_spring" : "translational_spring";
+    if (const TimeFunctionPtr law = section_.law("resistance")) {
+      check_resistance("resistance", *law);
+      load_.laws[turns ? "damper_moment" : "damper_force"] = law;
+    }
   }
 
   /// A load on nodes or faces of a deformable solid.
@@ -311,7 +336,7 @@ class LoadReader {
       const TimeFunctionPtr law = section_.law(l.name);
       if (!law) continue;
       load_.laws[l.name] = law;
-      if (l.variable == "v") check_resistance(l, *law);
+      if (l.variable == "v") check_resistance(l.name, *law);
     }
     for (const std::string& prefix : kind.curves) read_curve(prefix);
     for (const ChoiceParameter& w : kind.words)
@@ -372,13 +397,13 @@ class LoadReader {
   }
 
   /// Checks that a resistance dissipates at any rate.
-  void check_resistance(const LawParameter& l, const TimeFunction& law) {
+  void check_resistance(const std::string& key, const TimeFunction& law) {
     for (int k = -40; k <= 20; ++k)
       for (const double sign : {-1.0, 1.0}) {
         const double v = sign * std::pow(10.0, 0.1 * k), force = law(v);
         if (force * v >= -1e-12 * std::abs(v)) continue;
         section_.fault(
-            l.name, format("is {} at v = {}: a damper must not add energy", shown(force), shown(v)),
+            key, format("is {} at v = {}: a damper must not add energy", shown(force), shown(v)),
             "Give a force with the sign of v.");
         return;
       }
@@ -452,8 +477,14 @@ void read_loads(ReadContext& context, const SourceNode& node) {
     load.name = key.name;
     load.place = context.tree.place_of(key, node.children[k]);
     if (const FieldTable* table = read_kind(context, node.children[k], load.place,
-                                            "loads." + key.name, load_tables(), load.type))
-      LoadReader(context, node.children[k], load, *table).read();
+                                            "loads." + key.name, load_tables(), load.type)) {
+      if ((load.type == "moment" || load.type == "force") && node.children[k].find("joint"))
+        context.diagnostics.add(load.place, "loads." + key.name + ".type",
+                                format("a {} acts on a body", load.type),
+                                format("In a joint it is the type joint_{}.", load.type));
+      else
+        LoadReader(context, node.children[k], load, *table).read();
+    }
     context.loads.emplace(load.name, static_cast<int>(context.model.loads.size()));
     context.model.loads.push_back(std::move(load));
   }

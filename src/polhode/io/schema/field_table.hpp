@@ -115,6 +115,9 @@ template <class Spec>
   return fields;
 }
 
+/// Types of loads that are read as a motor of given moment or force, or as a damper in a joint.
+inline constexpr const char *kJointMoment = "joint_moment", *kJointForce = "joint_force";
+
 /// A kind of joint, load, material ... and its keys.
 struct KindTable {
   std::string name;

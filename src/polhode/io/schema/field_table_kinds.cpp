@@ -349,6 +349,42 @@ KindTable load_table(const LoadKind& kind) {
   return result;
 }
 
+const Field kForceCoordinate{.name = "coordinate",
+                             .kind = kChoice,
+                             .meaning = "The free coordinate of the joint.",
+                             .standard = "the only one of its kind"};
+
+/// Table of a force or moment along a coordinate of a joint: a plain name of what motors and
+/// dampers in joints do.
+KindTable joint_load_table(bool turns) {
+  const std::string name = turns ? kJointMoment : kJointForce, value = turns ? "moment" : "force";
+  KindTable result{name,
+                   {"load " + name,
+                    format("{} along a free coordinate of a joint, over time or over its rate.",
+                           turns ? "Moment" : "Force"),
+                    {}}};
+  Field coordinate = kForceCoordinate;
+  coordinate.choices =
+      turns ? std::vector<std::string>{"rx", "ry", "rz"} : std::vector<std::string>{"x", "y", "z"};
+  const Dimension dimension = turns ? kMoment : kForce;
+  result.table.fields = {
+      type_field("load", name),
+      kLoadJoint,
+      kStays,
+      coordinate,
+      {.name = value,
+       .kind = kTimeNumber,
+       .dimension = dimension,
+       .meaning = format("On the second body along the coordinate, over time; or resistance.")},
+      {.name = "resistance",
+       .kind = kLaw,
+       .dimension = dimension,
+       .meaning = "Against the motion, over the rate v of the coordinate; it has the sign of v.",
+       .variable = "v",
+       .of = read_unit(turns ? "rad/s" : "m/s").unit.value().dimension}};
+  return result;
+}
+
 const Field kLoadSolid{
     .name = "solid", .kind = kSolid, .meaning = "The solid it acts on.", .required = true};
 const Field kLoadFaces{.name = "surface",
@@ -411,7 +447,11 @@ const std::vector<KindTable>& joint_tables() {
 const std::vector<KindTable>& load_tables() {
   static const std::vector<KindTable> tables = [] {
     std::vector<KindTable> list;
-    for (const LoadKind& kind : load_kinds()) list.push_back(load_table(kind));
+    for (const LoadKind& kind : load_kinds()) {
+      if (kind.name == "torsional_spring")  // first of those in joints
+        for (const bool turns : {true, false}) list.push_back(joint_load_table(turns));
+      list.push_back(load_table(kind));
+    }
     for (const solids::SolidLoadKind& kind : solids::solid_load_kinds())
       list.push_back(solid_load_table(kind));
     return list;
