@@ -114,12 +114,19 @@ class JointSpace:
         return self._engine.mass_matrix(_optional(q))
 
     def gravity_moments(self, q: Any = None) -> Any:
-        """g (n,) [N m, N]: moments and forces along the coordinates that hold the bodies at rest against gravity."""
+        """g (n,) [N m, N]: moments and forces along the coordinates that hold the bodies at rest against gravity. q may be
+        (T, n), and so is g then."""
+        if np.ndim(q) == 2:
+            rest = np.zeros(len(self.coordinates))
+            return self.inverse_dynamics(rest, q, rest)
         return self._engine.gravity_forces(_optional(q))
 
     def coriolis(self, q: Any = None, qd: Any = None) -> Any:
         """c (n,) [N m, N]: those that keep the rates constant, without gravity. q and qd: the present ones unless
-        given."""
+        given, or (T, n), and so is c then."""
+        if np.ndim(q) == 2 or np.ndim(qd) == 2:
+            steady = self.inverse_dynamics(np.zeros(len(self.coordinates)), q, qd)
+            return steady - self.gravity_moments(q)
         return self._engine.velocity_forces(_optional(q), _optional(qd))
 
     def inverse_dynamics(self, qdd: Any, q: Any = None, qd: Any = None) -> Any:

@@ -96,6 +96,11 @@ def test_a_double_pendulum_has_the_matrices_of_the_textbook() -> None:
         assert sim.coriolis(q, qd) == pytest.approx(c, abs=1e-13)
         assert sim.gravity_moments(q) == pytest.approx(g, abs=1e-13)
         assert sim.inverse_dynamics(qdd, q, qd) == pytest.approx(M @ qdd + c + g, abs=1e-12)
+    several, rates = np.array([some(2, k, 3.0) for k in range(9)]), np.array([some(2, k, 4.0) for k in range(9, 18)])
+    for one, rate, g, c in zip(several, rates, sim.gravity_moments(several), sim.coriolis(several, rates)):
+        assert g == pytest.approx(closed_form(one, rate)[2], abs=1e-12)
+        assert c == pytest.approx(closed_form(one, rate)[1], abs=1e-12)
+    assert sim.coriolis(qd=rates).shape == (9, 2)
     assert sim.time == 0 and np.array_equal(sim.q, [0, 0]) and np.array_equal(sim.qd, [0, 0])
 
 

@@ -84,6 +84,43 @@ TEST(BodyColumns, ContainTheAngularMotion) {
       1e-6);
 }
 
+// A point of the ground as the disc sees it: the inverse of the disc's motion.
+// @tests{relative-motion}
+TEST(BodyColumns, AreThoseOfTheGroundSeenFromABody) {
+  const auto of_ground = [](const std::string& probe) {
+    std::string model = text(probe);
+    model.replace(model.find("body: disc"), 10, "body: ground");
+    return model;
+  };
+  Simulation s(io::read_model_text(
+      of_ground("seen_from: disc, point: [0.3, 0.1, 0.2], rotation: matrix, angular: true"),
+      "columns.yaml"));
+  ASSERT_EQ(s.run().end, RunEnd::finished);
+  const std::vector<double> row = probe_row(probe_target(s, s.model().output.probes[0]), s);
+  const Mat3 R = (Eigen::AngleAxisd(kPhi, Vec3::UnitZ()) * Eigen::AngleAxisd(kPsi, Vec3::UnitX()))
+                     .toRotationMatrix();
+  const double c = std::cos(kPhi), sine = std::sin(kPhi);
+  const Vec3 w(3.0 * c, 3.0 * sine, kRate), r = Vec3(0.3, 0.1, 0.2) - Vec3(c, sine, 0.0);
+  const Vec3 place = R.transpose() * r;
+  const Vec3 v = R.transpose() * (-Vec3(-kRate * sine, kRate * c, 0.0) - w.cross(r));
+  const Vec3 spin = R.transpose() * -w;
+  expect_numbers(row, 1, {place[0], place[1], place[2], v[0], v[1], v[2]}, 1e-6);
+  std::vector<double> turned;
+  for (int i = 0; i < 9; ++i) turned.push_back(R(i % 3, i / 3));
+  expect_numbers(row, 10, turned, 1e-9);
+  expect_numbers(row, 19, {spin[0], spin[1], spin[2]}, 1e-6);
+  try {
+    (void)io::read_model_text(of_ground("angular: true"), "columns.yaml");
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("the ground does not move. Name a body, or the one "
+                        "that it is seen_from."),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 // In the disc's own axes W = (3, φ̇ sin ψ, φ̇ cos ψ), relative to the arm (3, 0, 0).
 // @tests{relative-motion}
 TEST(BodyColumns, ContainTheAngularMotionInTheBodysAxes) {
@@ -112,6 +149,30 @@ TEST(BodyColumns, OfAMomentumAreThoseOfTheBody) {
   expect_numbers(at_end_of("momentum: disc, axes: body"), 1,
                  {0.0, kRate * c_b, -kRate * s_b, 0.6, J * kRate * s_b, J * kRate * c_b, kinetic},
                  1e-6);
+}
+
+// Seven thousand kilometres away, at seven and a half a second, as in an orbit: r m v is 6e12 N m
+// s.
+// @tests{reported-momentum}
+TEST(BodyColumns, OfAMomentumKeepTheirDigitsInAnOrbit) {
+  const std::string craft = R"(
+format: 1
+variables: {far: 0}
+bodies:
+  bus: {mass: 100, inertia: [20, 70, 80], position: [far, 0, 0], velocity: [0, far/1000 + 0.1, 0], angular_velocity: [1e-3, 2e-3, -1e-3]}
+  arm: {mass: 20, inertia: [1, 2, 2], position: [far + 2, 1, 0], velocity: [0, far/1000, 0.3], angular_velocity: [0, 0, 0.1]}
+analysis: {duration: 1 s, step: 0.1 s}
+output: {hdf5: false, probes: {one: {momentum: bus}, all: {momentum: "*"}}}
+)";
+  const auto momentum = [&](const char* far, std::size_t probe) {
+    const Simulation s(io::read_model_text(craft, "orbit.yaml", {far}));
+    const std::vector<double> row = probe_row(probe_target(s, s.model().output.probes[probe]), s);
+    return Vec3(row[4], row[5], row[6]);
+  };
+  EXPECT_NEAR((momentum("far=7e6", 0) - Vec3(0.02, 0.14, -0.08)).norm(), 0.0, 1e-15);
+  const Vec3 near = momentum("far=0", 1);
+  EXPECT_NEAR(near[2], -0.08 + 0.2 - 100.0 * 20.0 / 120.0 * 2.0 * 0.1, 1e-13);
+  EXPECT_NEAR((momentum("far=7e6", 1) - near).norm(), 0.0, 1e-7);  // 1e-9 m and 1e-12 m/s of 20 kg
 }
 
 // That of all bodies of a part and their rotors is what the balances have, about another point.

@@ -146,8 +146,8 @@ const std::vector<ShapeKind>& shape_kinds() {
   const ShapeSize x{"x", "length along x"};
   const ShapeSize y{"y", "length along y"};
   const ShapeSize z{"z", "length along z"};
-  const ShapeSize diameter{"diameter", "across"};
-  const ShapeSize length{"length", "along z"};
+  const ShapeSize diameter{"diameter", "full width of the circle"};
+  const ShapeSize length{"length", "length along z"};
   static const std::vector<ShapeKind> kinds{
       {"box", "a block", {x, y, z}, nullptr, box_properties, box_surface},
       {"sphere", "a ball", {diameter}, nullptr, sphere_properties, sphere_surface},
@@ -159,14 +159,15 @@ const std::vector<ShapeKind>& shape_kinds() {
        cylinder_surface},
       {"capsule",
        "a round bar along z with hemispherical ends",
-       {diameter, {"length", "overall, along z"}},
+       {diameter, {"length", "overall length along z"}},
        capsule_misfit,
        capsule_properties,
        capsule_surface},
       {"cone",
        "a cone along z, its apex towards +z; the origin is its centroid, a quarter of the length "
        "above the base",
-       {{"diameter", "of the base"}, {"length", "along z, from the base to the apex"}},
+       {{"diameter", "full width of the base"},
+        {"length", "length along z, from the base to the apex"}},
        nullptr,
        cone_properties,
        cone_surface},

@@ -18,7 +18,7 @@ struct SeenMotion {
 
 SeenMotion in_the_world(const Simulation& simulation, int body, const Vec3& Z) {
   if (body == kGround)
-    return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Identity(), Vec3::Zero(), Vec3::Zero()};
+    return {Z, Vec3::Zero(), Vec3::Zero(), Mat3::Identity(), Vec3::Zero(), Vec3::Zero()};
   const Simulation::PointMotion p = simulation.point(body, Z);
   const BodyMotion m = simulation.body(body);
   return {p.position, p.velocity, p.acceleration,

@@ -43,17 +43,22 @@ std::vector<double> momentum_numbers(const Simulation& simulation, const std::ve
   const Model& model = simulation.model();
   double mass = 0.0, kinetic = 0.0;
   Vec3 moment = Vec3::Zero(), p = Vec3::Zero(), l = Vec3::Zero();
+  // About a body, as in an orbit the moments about the origin are larger by ten digits and more.
+  const BodyMotion first = simulation.body(bodies.front());
+  Vec3 drift = Vec3::Zero();  // momentum relative to it
   for (const int i : bodies) {
     const BodySpec& body = model.bodies[static_cast<std::size_t>(i)];
     const BodyMotion m = simulation.body(i);
     const Mat3 J = body.point_mass ? Mat3::Zero().eval() : body.inertia;
     mass += body.mass;
-    moment += body.mass * m.r;
+    const Vec3 r = m.r - first.r, v = m.v - first.v;
+    moment += body.mass * r;
+    drift += body.mass * v;
     p += body.mass * m.v;
-    l += body.mass * m.r.cross(m.v) + m.q * Vec3(J * m.W);
+    l += body.mass * r.cross(v) + m.q * Vec3(J * m.W);
     kinetic += kinetic_energy(body.mass, J, m.v, m.W);
   }
-  if (mass > 0.0) l -= moment.cross(p) / mass;
+  if (mass > 0.0) l -= moment.cross(drift) / mass;
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
     const LoadSpec& load = model.loads[i];
     if (load.type != Rotor::kKind ||
@@ -64,9 +69,8 @@ std::vector<double> momentum_numbers(const Simulation& simulation, const std::ve
     kinetic += report[Rotor::kReportedEnergy];
   }
   if (in_body) {
-    const Quat q = simulation.body(bodies.front()).q;
-    p = q.conjugate() * p;
-    l = q.conjugate() * l;
+    p = first.q.conjugate() * p;
+    l = first.q.conjugate() * l;
   }
   return {p[0], p[1], p[2], l[0], l[1], l[2], kinetic};
 }

@@ -91,8 +91,9 @@ ProbeTarget find_target(const Simulation& simulation, const ProbeSpec& spec,
         "Name a body, a joint, a load, a solid, a beam, a cable, a contact, a controller or a "
         "momentum");
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
-  if (body && index == kGround)
-    throw InputError(where, "records the ground, which does not move", "Name a body");
+  if (body && index == kGround && spec.seen_from == kGround)
+    throw InputError(where, "records the ground, which does not move",
+                     "Name a body, or the one that it is seen from");
   return {.spec = spec, .index = index};
 }
 

@@ -195,14 +195,19 @@ bool read_recorded(ReadContext& context, Section& section, const std::vector<std
     const auto body = section.body("body");
     const auto point = section.vector("point");
     if (!body) return false;
-    if (*body == kGround) {
-      section.fault("body", "the ground does not move", "Name a body.");
+    const std::size_t faults = context.diagnostics.size();
+    read_body_columns(section, probe);
+    if (*body == kGround && probe.seen_from == kGround) {
+      if (context.diagnostics.size() == faults)
+        section.fault("body", "the ground does not move",
+                      "Name a body, or the one that it is seen_from.");
       return false;
     }
-    const BodySpec& spec = context.model.bodies[static_cast<std::size_t>(*body)];
-    probe.target = spec.name;
-    if (point) probe.point = *point - spec.com;
-    read_body_columns(section, probe);
+    probe.target = context.model.body_name(*body);
+    if (point)
+      probe.point = *body == kGround
+                        ? *point
+                        : Vec3(*point - context.model.bodies[static_cast<std::size_t>(*body)].com);
   } else if (probe.kind == "solid") {
     read_solid_probe(context, section, probe);
   } else if (probe.kind == "beam" || probe.kind == "cable") {

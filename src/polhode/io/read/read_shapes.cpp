@@ -33,7 +33,7 @@ std::optional<std::vector<double>> read_sizes(ReadContext& context, const Source
       table.fields.push_back({.name = size.name,
                               .kind = FieldKind::kNumber,
                               .dimension = dimensions::kLength,
-                              .meaning = size.meaning,
+                              .meaning = sentence(size.meaning),
                               .required = true,
                               .range = kPositive});
     }
