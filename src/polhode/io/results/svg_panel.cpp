@@ -14,6 +14,8 @@ namespace {
 /// Distance outside its panel at which a curve is clipped [pixel].
 constexpr double kMargin = 50.0;
 constexpr double kClose = 0.5;
+/// Ticks without which an axis has no scale.
+constexpr std::size_t kFewestTicks = 3;
 
 }  // namespace
 
@@ -42,12 +44,15 @@ std::vector<double> round_ticks(double low, double high, int count) {
   const double rough = (high - low) / std::max(1, count);
   if (!(rough > 0.0) || !std::isfinite(rough)) return {low};
   const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10.0 * decade;
-  for (const double factor : {5.0, 2.0, 1.0})
-    if (factor * decade >= rough * (1.0 - 1e-9)) step = factor * decade;
   std::vector<double> ticks;
-  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
-    ticks.push_back(k * step);
+  // The longest step that is short enough; a shorter one where it leaves too few to read a scale.
+  for (const double factor : {10.0, 5.0, 2.0, 1.0, 0.5}) {
+    const double step = factor * decade;
+    if (step < rough * (1.0 - 1e-9) && ticks.size() >= kFewestTicks) break;
+    ticks.clear();
+    for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
+      ticks.push_back(k * step);
+  }
   return ticks;
 }
 

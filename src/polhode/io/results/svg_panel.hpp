@@ -46,7 +46,7 @@ class SvgPanel {
   std::string axes_, behind_, curves_;
 };
 
-/// Ticks at round numbers within a range, about `count` of them.
+/// Ticks at round numbers within a range, at most some `count` of them, but three at least.
 [[nodiscard]] std::vector<double> round_ticks(double low, double high, int count);
 
 }  // namespace polhode::io
