@@ -11,6 +11,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 OWN = {"polhode", *(path.stem for path in (ROOT / "examples").glob("*.py"))}
+for tutorial in (ROOT / "docs/tutorials").glob("*.md"):  # a script may import one that the page has saved before
+    OWN.update(re.findall(r"^.*Save this as `(\w+)\.py`", tutorial.read_text(), re.M))
 
 
 def programs():

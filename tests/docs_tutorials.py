@@ -5,6 +5,8 @@ states are compared with closed forms and with equations integrated here.
 
 * machine_designer: Newton's and Euler's equations of the slider-crank at constant speed, with friction; Lagrange's equation with the motor.
 * lecturer: Jacobi's elliptic functions for the free body, and balances computed from its rates.
+* robotics: Newton-Euler equations of the arm (docs_arm.py), integrated.
+* spacecraft: the pendulum's elliptic integral for the libration, the integral of the gradient's moment, Euler-Bernoulli beams on a hub.
 
 POLHODE names the program. Sweeps need the Python package; python/tests/test_docs.py runs them and compares them with what is here.
 """
@@ -13,10 +15,12 @@ import json
 import math
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import docs_arm  # noqa: E402
 import docs_numbers  # noqa: E402
 import docs_snippets  # noqa: E402
 
@@ -248,6 +252,105 @@ def lecturer(text, folder):
     return f"rates within {error:.1e} rad/s, turns over every {exact.half_period:.4f} s", error / 1e-6
 
 
+def row_of_table(text, name):
+    """Numbers of a row of a table of a page."""
+    return [float(cell) for cell in re.search(rf"^\| {re.escape(name)} \| (.*) \|$", text, re.M)[1].split("|")]
+
+
+def robotics(text, folder):
+    arm = docs_arm.Arm()
+    tool = table(folder / "arm.results/probes/tool.csv")
+
+    def rate(_, state):
+        return [*state[7:], *arm.accelerations(state[:7], state[7:], [0.0] * 7)]
+
+    fall = docs_numbers.integrated(rate, arm.start + [0.0] * 7, tool["t"], 2e-3)
+    error = docs_numbers.largest([[tool[c][k] for c in "xyz"] for k in range(len(fall))], [arm.place(state[:7])[0] for state in fall])
+    assert error < stated(text, r"within\s([\d.]+) mm") / 1000, error
+    fastest = max(math.hypot(*v) for v in zip(tool["vx"], tool["vy"], tool["vz"]))
+    assert abs(stated(text, r"its tool reaches ([\d.]+) m/s") - fastest) < 6e-3, fastest
+
+    held = arm.moments(arm.start, [0.0] * 7, [0.0] * 7)
+    assert max(abs(a - b) for a, b in zip(row_of_table(text, "holding still [N m]"), held)) < 6e-3, held
+    assert abs(stated(text, r"9\.81 = ([\d.]+) N m") + held[5]) < 6e-3
+    assert abs(stated(text, r"has an inertia of ([\d.]+) kg m²") - arm.mass_matrix(arm.start)[0][0]) < 6e-3
+    assert abs(stated(text, r"of ([\d.]+) kg m² upright") - arm.mass_matrix([0.0] * 7)[0][0]) < 6e-3
+    return f"the tool falls within {error:.1e} m of its equations", error / 2e-4
+
+
+def mode_of_panels(hub, inertia, translates, low=0.467, high=0.62):
+    """First frequency [Hz], above that of a clamped panel, of Euler-Bernoulli beams on a hub: both the same way, or against each other."""
+    stiff, mass, length, root = 2e9 * 0.6 * 0.01**3 / 12, 300 * 0.6 * 0.01, 3.0, 0.3
+    w0, w1 = (1.0, 0.0) if translates else (root, 1.0)  # displacement and slope at the root
+
+    def balance(f):
+        b = (mass * (2 * math.pi * f) ** 2 / stiff) ** 0.25
+        c, s, ch, sh = math.cos(b * length), math.sin(b * length), math.cosh(b * length), math.sinh(b * length)
+        # w = p cosh + q sinh + (w0 - p) cos + (w1/b - q) sin; no moment and no force at the end.
+        end, force = w0 * c + w1 * s / b, w1 * c / b - w0 * s
+        det = (ch + c) ** 2 - (sh + s) * (sh - s)
+        p, q = (end * (ch + c) - force * (sh + s)) / det, ((ch + c) * force - (sh - s) * end) / det
+        bend, shear = stiff * b**2 * (2 * p - w0), stiff * b**3 * (2 * q - w1 / b)
+        square = (2 * math.pi * f) ** 2
+        return hub * square - 2 * shear if translates else inertia * square + 2 * (bend - root * shear)
+
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if balance(low) * balance(middle) <= 0 else (middle, high)
+    return low
+
+
+def spacecraft(text, folder):
+    n, stretch = math.sqrt(3.986004418e14 / 7e6**3), 70 - 20
+    small = 2 * math.pi / (n * math.sqrt(3 * stretch / 80))
+    swing = small * 2 / math.pi * docs_numbers.quarter_period(math.sin(math.radians(10)) ** 2)
+    earth = table(folder / "satellite.results/probes/earth.csv")
+    pitch = [math.atan2(y, -x) for x, y in zip(earth["x"], earth["y"])]
+    zeros = changes_of_sign(earth["t"], pitch)
+    late = max(abs(t - swing / 4 - k * swing / 2) for k, t in enumerate(zeros))
+    assert len(zeros) == 5 and late < 0.05, (zeros, swing)
+    assert abs(stated(text, r"a period of ([\d.]+) s; for a swing") - small) < 0.06 and abs(stated(text, r"gives ([\d.]+) s, 0\.74") - swing) < 0.06, (small, swing)
+    assert abs(swing * n / (2 * math.pi) - 0.74) < 5e-3
+
+    sat, wheel, torque, whole = (table(folder / f"hold.results/probes/{name}.csv") for name in ("sat", "wheel", "torque", "momentum"))
+    closed = [0.75 * n * stretch * (1 - math.cos(2 * n * t)) for t in wheel["t"]]
+    away = max(abs(a - b) for a, b in zip(wheel["axial_momentum"], closed))
+    assert away < 2e-4, away  # the attitude is held to 4e-4 rad
+    assert abs(stated(text, r"= ([\d.]+) N m s twice per orbit") - 1.5 * n * stretch) < 6e-5
+    assert abs(stated(text, r"The run has ([\d.]+) N m s, or") - max(wheel["axial_momentum"])) < 6e-5
+    assert abs(stated(text, r"or (\d+) rpm") - max(wheel["speed"]) * 30 / math.pi) < 0.6
+    assert abs(stated(text, r"stays within ([\d.]+) rad") - max(map(abs, sat["thetaz"]))) < 6e-6
+    given, balance = 0.0, 0.0  # Simpson's rule over two frames
+    for k in range(2, len(torque["t"]), 2):
+        given += (torque["t"][k] - torque["t"][k - 2]) / 6 * (torque["mz"][k - 2] + 4 * torque["mz"][k - 1] + torque["mz"][k])
+        balance = max(balance, abs(whole["lz"][k] - given))
+    assert balance < 1e-6, balance
+
+    done = subprocess.run([docs_snippets.POLHODE, "modes", "panels.yaml", "--about", "start", "--set", "push=0", "-n", "8", "--json"],
+                          cwd=folder, capture_output=True, text=True, check=True, timeout=120)
+    found = [mode["frequency"] for mode in json.loads(done.stdout)["modes"]][6:]
+    beams = mode_of_panels(120.0, 80.0, True), mode_of_panels(120.0, 80.0, False)
+    for name, own, closed in zip(("both panels the same way, the hub moves", "one against the other, the hub turns"), found, beams):
+        assert max(abs(a - b) for a, b in zip(row_of_table(text, name), (own, closed))) < 6e-5, (name, own, closed)
+        assert abs(own / closed - 1) < 2.5e-3
+
+    inertia, rest = 80 + 2 * 5.4 * (1.8**2 + (9 + 0.01**2) / 12), {}
+    for name, half, degrees in (("rough", 18.5674, 16.0), ("smooth", 17.6833, 14.5)):
+        assert abs(half * found[1] - (10.5 if name == "rough" else 10)) < 1e-4 * half
+        sat, wheel = (table(folder / f"{name}.results/probes/{probe}.csv") for probe in ("sat", "wheel"))
+        rest[name] = max(abs(w) for t, w in zip(sat["t"], sat["wz"]) if t > 2 * half + 0.1)
+        angle = sat["thetaz"][-1]
+        assert abs(math.degrees(angle) - degrees) < 0.06 and abs(angle / (0.1 * half**2 / inertia) - 1) < 1.5e-3, angle
+        assert abs(wheel["axial_momentum"][-1]) < 1e-13
+    assert f"with {rest['rough']:.1e} rad/s".replace("e-0", "e-") in text and f"with {rest['smooth']:.1e},".replace("e-0", "e-") in text, rest
+    assert abs(stated(text, r"The wheel reaches ([\d.]+) rad/s") - max(map(abs, wheel["speed"]))) < 0.06
+    assert abs(stated(text, r"has ([\d.]+) kg m²\n") - inertia) < 0.06
+    assert abs(stated(text, r"= ([\d.]+) rad; the run") - 0.1 * 17.6833**2 / inertia) < 6e-5
+    assert abs(stated(text, r"the run has ([\d.]+) rad") - angle) < 6e-5
+    assert abs(stated(text, r"in proportion: ([\d.]+) N m") - 0.1 * math.radians(30) / angle) < 6e-5
+    return f"libration within {late:.1e} s, momentum of gravity within {balance:.1e} N m s, modes {found[0]:.4f} and {found[1]:.4f} Hz", late / 0.05
+
+
 def check(page, compare, folder):
     """What is said about a page, and the largest error over what is allowed."""
     count, faults = docs_snippets.run_page(page, folder)
@@ -258,7 +361,7 @@ def check(page, compare, folder):
 
 def main():
     faults = 0
-    for compare in (machine_designer, lecturer):
+    for compare in (machine_designer, lecturer, robotics, spacecraft):
         with tempfile.TemporaryDirectory() as folder:
             try:
                 said, error = check(PAGES / f"{compare.__name__}.md", compare, pathlib.Path(folder))

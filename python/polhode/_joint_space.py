@@ -114,8 +114,8 @@ class JointSpace:
         return self._engine.mass_matrix(_optional(q))
 
     def gravity_moments(self, q: Any = None) -> Any:
-        """g (n,) [N m, N]: moments and forces along the coordinates that hold the bodies at rest against gravity. q may be
-        (T, n), and so is g then."""
+        """g (n,) [N m, N]: moments and forces along the coordinates that hold the bodies at rest against gravity. q may
+        be (T, n), and so is g then."""
         if np.ndim(q) == 2:
             rest = np.zeros(len(self.coordinates))
             return self.inverse_dynamics(rest, q, rest)

@@ -44,11 +44,13 @@ def test_measures_of_a_throw_are_its_closed_forms(step: str, order: float) -> No
     assert math.isnan(of(f"first({z} > 3)")) and math.isnan(of(f"at({z}, 0.6)")) and math.isnan(of(f"at({z}, -1)"))
     assert of(f"first({z} > 0.5)") == 0
     speed = r["bodies.ball.velocity.size"]
-    assert of("final(probes.ball.v.size)") == pytest.approx(speed[-1], abs=1e-12) == of("final(bodies.ball.velocity.size)")
+    assert of("final(probes.ball.v.size)") == pytest.approx(speed[-1], abs=1e-12)
+    assert of("final(bodies.ball.velocity.size)") == speed[-1]
     assert r["probes.ball.v.size"] == pytest.approx(np.hypot(r["probes.ball.vx"], r["probes.ball.vz"]), abs=1e-12)
     assert r.unit("probes.ball.v.size") == r.unit("bodies.ball.velocity.size") == "m/s"
     assert r.probes["ball"]["distance"][0] == pytest.approx(1) and r.unit("probes.ball.distance") == "m"
-    assert np.array_equal(r.times("probes.ball.z"), r.probes["ball"].t) and np.array_equal(r.times("energy.total"), r.time)
+    assert np.array_equal(r.times("probes.ball.z"), r.probes["ball"].t)
+    assert np.array_equal(r.times("energy.total"), r.time)
     figure = r.plot("probes.ball.v.size", "bodies.ball.velocity.size")
     assert [panel.get_ylabel() for panel in figure.axes] == [
         "probes.ball.v.size [m/s]", "bodies.ball.velocity.size [m/s]"]
