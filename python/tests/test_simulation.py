@@ -248,7 +248,7 @@ def test_endless_steps_are_those_of_a_model_with_an_end(pendulum: polhode.Model,
     for _ in ended:
         endless.step()
     assert endless.state == ended.state and endless.end == float("inf") and repr(endless).endswith("at t = 1 s>")
-    with pytest.raises(polhode.ModelError):
+    with pytest.raises(polhode.ModelError, match="beyond the end of the analysis, a longer duration, or none"):
         ended.step()
     for step in endless:
         if step.time > 2:

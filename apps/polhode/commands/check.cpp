@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -118,7 +119,12 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                "moved by {:.2g} "
                "of the mechanism's size. Check the positions of the joints.",
                start.position_residual, start.moved_body, start.largest_move));
-  if (start.velocity_change > 1e-6)
+  // Bodies of which no velocity is given take that of the drives.
+  const std::vector<BodySpec>& bodies = simulation.model().bodies;
+  const bool all_rest = std::all_of(bodies.begin(), bodies.end(), [](const BodySpec& b) {
+    return b.velocity.isZero(0.0) && b.angular_velocity.isZero(0.0);
+  });
+  if (start.velocity_change > 1e-6 && (!all_rest || drives(simulation).empty()))
     list.push_back(
         format("The initial velocities violate the joints by {:.2g}; they were corrected by up to "
                "{:.2g}. Give velocities that the joints allow.",

@@ -100,7 +100,7 @@ StepReport Simulation::step(double t_limit) {
     throw InputError(
         "the end of the step",
         format("is {:.6g}, but must be after the present time, {:.6g}", t_limit, time()),
-        "Give a later time; the end of the analysis may have been reached");
+        "Give a later time; beyond the end of the analysis, a longer duration, or none");
   const bool is_short = impl_->last_work < kShortWork;
   const double wall = wall_clock(), cpu = is_short ? 0.0 : cpu_clock();
   StepReport report = advance(t_limit);
