@@ -192,6 +192,14 @@ joints:
                                   "[0.9, 0.3, 1.1]], curve_x: 0.25*cos(s), curve_y: "
                                   "0.2*sin(s), other_curve_x: "
                                   "0.22*cos(s), other_curve_y: 0.25*sin(s)}}\n"},
+      {"slide_on_beam",
+       "sections: {s: {type: general, EA: 1e4, GA_y: 4e3, GA_z: 4e3, GJ: 160, EI_y: 200, EI_z: "
+       "150, "
+       "mass_per_length: 0.5, inertia_per_length: [0.01, 0.005, 0.005]}}\n"
+       "beams: {rail: {points: [[-0.5, 0.1, 1.2], [1.5, 0.1, 1.2]], elements: 4, section: s, "
+       "bonded: {stage: start}}}\n"
+       "loads: {it: {type: slide_on_beam, beam: rail, body: one, stiffness: 30, free_position: 1, "
+       "damping: 2}}\n"},
       {"rolling",
        "loads: {it: {type: rolling, bodies: [stage, one], at: [[0, "
        "0, 0.9], [0.5, 0.1, 1.2]], "

@@ -8,6 +8,7 @@
 #include <polhode/beams/cable.hpp>
 #include <polhode/beams/running_cable.hpp>
 #include <polhode/compile/beam_mesh.hpp>
+#include <polhode/compile/build_slide.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>
 #include <polhode/compile/centrifugal_forces.hpp>
@@ -22,6 +23,7 @@
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/loads/rotor.hpp>
+#include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/model/gear_geometry.hpp>
 #include <polhode/model/switched_contacts.hpp>
 #include <polhode/model/velocity_jumps.hpp>
@@ -45,6 +47,8 @@ class Builder {
     for (const LoadSpec& load : model_.loads) add_load(load);
     for (const BeamSpec& beam : model_.beams) add_beam(beam);
     for (const CableLineSpec& cable : model_.cables) add_cable(cable);
+    for (const LoadSpec& load : model_.loads)
+      if (is_on_beam(load)) add_slide(system_, model_, load, map_.body);
     map_.contacts = build_contacts(model_, map_.body, map_.contact);
     add_surface_contacts(system_, model_, map_.body, map_.solids, map_.contact);
     system_.set_contacts(map_.contacts);
@@ -204,6 +208,11 @@ class Builder {
                 "cylindrical, or give the coordinate");
   }
 
+  /// Whether a load is an element on nodes of a beam.
+  [[nodiscard]] static bool is_on_beam(const LoadSpec& load) {
+    return load.solid < 0 && acts_on_beam(load_kind(load.type));
+  }
+
   void add_load(const LoadSpec& load) {
     const std::string where = format("loads.{}", load.name);
     if (load.solid >= 0) {
@@ -213,6 +222,7 @@ class Builder {
       add_solid_load(system_, load, map_.solids.at(static_cast<std::size_t>(load.solid)));
       return;
     }
+    if (is_on_beam(load)) return;  // needs the beam's nodes
     const LoadKind& kind = load_kind(load.type);
     int a = load.a, b = load.b;
     std::optional<FreeAngle> angle;
@@ -440,6 +450,10 @@ class Builder {
     map_.joint = interactions[Joint::kKind];
     std::map<std::string, std::size_t> next;
     for (const LoadSpec& load : model_.loads) {
+      if (is_on_beam(load)) {
+        map_.load.push_back(-1);
+        continue;
+      }
       std::size_t& item = next[load.type];
       map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(item));
       item += static_cast<std::size_t>(load.solid >= 0 ? 1 : load_kind(load.type).parts) +

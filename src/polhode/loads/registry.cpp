@@ -16,6 +16,7 @@
 #include <polhode/loads/rolling.hpp>
 #include <polhode/loads/rotor.hpp>
 #include <polhode/loads/servo.hpp>
+#include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/loads/spring_damper.hpp>
 
 namespace polhode {
@@ -470,6 +471,7 @@ const std::vector<LoadKind>& load_kinds() {
        {},
        {"points", "curve_x"},
        {"", "other_"}},
+      slide_on_beam_kind(),
       {"rolling",
        "constraint of a wheel or ball that rolls without slip on a plane of another body",
        LoadPlace::wheel,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/equations/body_contact_assembler.hpp>
 #include <polhode/equations/newton_system.hpp>
@@ -160,6 +161,12 @@ class WholeTangent {
 
   void assemble() {
     const double s = trial_.scale(system_);
+    // Their tangents are those of an iteration, in which multipliers move with the bodies.
+    for (int g = 0; g < system_.nodes().group_count(); ++g)
+      if (as_slide(system_.nodes().group(g))) {
+        fault_ = "the assembled tangent, as multipliers of points on beams are eliminated";
+        return;
+      }
     if (nodes_) {
       (void)nodes_->assemble(state_, trial_, true, still_);
       if (!condensation_->factor(*nodes_, trial_)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
@@ -199,9 +200,10 @@ void compare_group(const System& system, const State& state, Trial& trial, int g
   const GroupForces forces(system, state, g);
   const std::vector<int> acted_on = forces.acted_on();
   if (!group.has_tangent() || forces.blocks().row.empty()) {
-    report.left_out.push_back(
-        format("{}, which {}", name,
-               group.has_tangent() ? "has no contact in this step" : "has no tangent"));
+    report.left_out.push_back(format("{}, which {}", name,
+                                     group.has_tangent() ? "has no contact in this step"
+                                     : as_slide(group)   ? "eliminates its multipliers"
+                                                         : "has no tangent"));
     return;
   }
   std::vector<double> tangent(9 * forces.blocks().row.size(), 0.0);

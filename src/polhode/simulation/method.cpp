@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/dynamics/extrapolation.hpp>
@@ -27,6 +28,8 @@ constexpr int kOrderExtrapolated = 6;
 constexpr int kIterations = 12, kIterationsSolids = 30;
 /// With surfaces of solids in contact: their forces follow from tiny displacements.
 constexpr double kToleranceSurfaces = 1e-9;
+/// With points that slide along beams: their positions are the rows of constraints.
+constexpr double kToleranceSlides = 1e-10;
 /// With cables among them: the rounding of the length of a stiff segment moves light nodes
 /// sideways.
 constexpr double kToleranceCables = 1e-7;
@@ -110,6 +113,13 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
 bool has_surfaces(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g)
     if (system.nodes().group(g).barrier_constraint()) return true;
+  return false;
+}
+
+/// Whether points slide along beams: exact constraints, whose multipliers need converged positions.
+bool has_slides(const System& system) {
+  for (int g = 0; g < system.nodes().group_count(); ++g)
+    if (as_slide(system.nodes().group(g))) return true;
   return false;
 }
 
@@ -217,6 +227,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.conserving = a.conserving;
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
                        : c.extrapolated          ? kToleranceExtrapolated
+                       : has_slides(system)      ? kToleranceSlides
                        : c.order > 4             ? kToleranceHighOrder
                        : !system.nodes().empty() ? kToleranceSolids
                                                  : kToleranceBodies;

@@ -2,11 +2,40 @@
 // Reports of a Simulation at its present instant.
 #include <algorithm>
 
+#include <polhode/beams/slide_on_beam.hpp>
+#include <polhode/core/assert.hpp>
 #include <polhode/dynamics/point_motion.hpp>
-#include <polhode/loads/registry.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
 
 namespace polhode {
+
+namespace {
+
+/// Values of the channels of a point that slides along a beam, see slide_on_beam_kind().
+/// @param now  With the force of its body on its node.
+std::vector<double> slide_report(const System& system, State projected, const InstantSolution& now,
+                                 const std::string& name) {
+  bond_nodes(system, projected);
+  StepContext still;
+  still.t_n = projected.t;
+  const NodeStep instant = node_instant(system, projected, still);
+  const Nodes& nodes = system.nodes();
+  for (int g = 0; g < nodes.group_count(); ++g) {
+    const SlideOnBeam* slide = as_slide(nodes.group(g));
+    if (!slide || slide->name() != name) continue;
+    const SlideReport r =
+        slide->report(instant, projected.element_history.data() + nodes.first_history(g));
+    Vec3 F = Vec3::Zero();
+    if (!now.node_force.empty()) F = -NodeStep::at(now.node_force.data(), slide->spec().point);
+    return {F.x(), F.y(), F.z(), r.position, r.speed, F.dot(r.tangent), r.energy};
+  }
+  POLHODE_ASSERT(false);
+  return {};
+}
+
+}  // namespace
 
 BodyMotion Simulation::body(int body) const {
   const int index = impl_->map.body[body];
@@ -81,6 +110,8 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
 std::vector<double> Simulation::load(int load) const {
   const InstantSolution& now = impl_->at_instant();
   const System& system = impl_->system;
+  if (acts_on_beam(load_kind(model().loads[load].type)))
+    return slide_report(system, impl_->projected, now, model().loads[load].name);
   const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
   const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   const LoadKind& kind = load_kind(model().loads[load].type);

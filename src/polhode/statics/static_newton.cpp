@@ -57,12 +57,14 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
     if (group.traits(ref.item).history_size > 0 && group.traits(ref.item).lazy_history)
       turns_.push_back(i);
   }
-  for (int g = 0; g < nodes.group_count(); ++g)
+  for (int g = 0; g < nodes.group_count(); ++g) {
+    const BarrierConstraint* points = nodes.group(g).barrier_constraint();
+    if (!points) continue;
     if (const ChangingSparsity* pattern = nodes.group(g).changing_sparsity())
-      meetings_.push_back({pattern, nodes.group(g).barrier_constraint(),
-                           static_cast<std::size_t>(nodes.first_history(g))});
-    else if (nodes.group(g).barrier_constraint())
+      meetings_.push_back({pattern, points, static_cast<std::size_t>(nodes.first_history(g))});
+    else
       shapes_.push_back(g);
+  }
 }
 
 /// Sets the times of the step: they are the load factors. At an instant the step has a length all

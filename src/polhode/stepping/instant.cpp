@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/QR>
+
+#include <polhode/equations/node_motion.hpp>
 #include <polhode/stepping/instant_system.hpp>
+#include <polhode/stepping/rows_of_nodes.hpp>
 
 namespace polhode {
+
+namespace {
+
+/// Corrections by the responses: the second removes the rounding of the first.
+constexpr int kRowCorrections = 2;
+
+}  // namespace
 
 InstantSolver::InstantSolver(const System& system, std::string solver)
     : impl_(std::make_unique<Impl>(system, std::move(solver))) {}
@@ -9,9 +20,8 @@ InstantSolver::~InstantSolver() = default;
 
 void InstantSolver::set_load_factor(double factor) { impl_->context.load_factor = factor; }
 
-VelocityReport InstantSolver::project_velocities(State& state) {
-  Impl& s = *impl_;
-  const System& system = s.system;
+VelocityReport InstantSolver::Impl::project_bodies(State& state) {
+  Impl& s = *this;
   const int bodies = system.body_count();
   VelocityReport report;
   s.take(state);
@@ -85,9 +95,8 @@ VelocityReport InstantSolver::project_velocities(State& state) {
 }
 
 /// @eq{eq:rbm-linear-momentum-balance} @eq{eq:rbm-angular-momentum-balance}
-InstantSolution InstantSolver::accelerations(const State& state, std::span<const Vec6> more) {
-  Impl& s = *impl_;
-  const System& system = s.system;
+InstantSolution InstantSolver::Impl::unrestrained(const State& state, std::span<const Vec6> more) {
+  Impl& s = *this;
   const int bodies = system.body_count();
   const double per_mass = 1.0 / system.mean_mass();
   InstantSolution solution;
@@ -143,6 +152,80 @@ InstantSolution InstantSolver::accelerations(const State& state, std::span<const
   for (int row = 0; row < system.rows(); ++row)
     solution.lambda[row] += system.mean_mass() * s.x[6 * bodies + row];
   return solution;
+}
+
+/// The solution is linear in the wrenches, so that multipliers follow from those of the responses.
+InstantSolution InstantSolver::accelerations(const State& given, std::span<const Vec6> more) {
+  Impl& s = *impl_;
+  if (!has_rows(s.system)) return s.unrestrained(given, more);
+  State state = given;
+  bond_nodes(s.system, state);
+  s.context.t_n = state.t;
+  const RowsOfNodes of(s.system, state, s.context);
+  std::vector<Vec6> wrenches(more.begin(), more.end());
+  wrenches.resize(static_cast<std::size_t>(s.system.body_count()), Vec6::Zero());
+  InstantSolution solution = s.unrestrained(state, wrenches);
+  Vec lambda = Vec::Zero(of.count());
+  if (!solution.solved) return solution;
+  Mat K(of.count(), of.count());
+  const Vec before = of.times(solution.node_a);
+  const double unit = s.system.mean_mass();
+  for (Eigen::Index r = 0; r < of.count(); ++r) {
+    std::vector<Vec6> with = wrenches;
+    of.add(unit * Vec::Unit(of.count(), r), with);
+    K.col(r) = (of.times(s.unrestrained(state, with).node_a) - before) / unit;
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Mat> inverse(K);
+  for (int i = 0; i < kRowCorrections; ++i) {
+    lambda += inverse.solve(of.targets(&NodeRow::second) - of.times(solution.node_a));
+    std::vector<Vec6> with = wrenches;
+    of.add(lambda, with);
+    solution = s.unrestrained(state, with);
+  }
+  of.subtract(lambda, solution.node_force);
+  return solution;
+}
+
+VelocityReport InstantSolver::project_velocities(State& state) {
+  VelocityReport report = impl_->project_bodies(state);
+  Impl& s = *impl_;
+  if (!has_rows(s.system)) return report;
+  bond_nodes(s.system, state);
+  s.context.t_n = state.t;
+  const RowsOfNodes of(s.system, state, s.context);
+  const auto residual = [&] { return Vec(of.targets(&NodeRow::rate) - of.times(state.node_v)); };
+  const double before = residual().lpNorm<Eigen::Infinity>();
+  report.residual_before = std::max(report.residual_before, before);
+  report.residual = std::max(report.residual, before);
+  if (before <= 32.0 * kInstantRoundOff * report.scale || !take_impulses(state)) return report;
+  Mat K(of.count(), of.count());
+  std::vector<std::vector<Vec6>> response;
+  const double unit = s.system.mean_mass();
+  for (std::size_t r = 0; r < of.rows.size(); ++r) {
+    std::vector<Vec6> impulse = of.on_bodies[r];
+    for (Vec6& w : impulse) w *= unit;
+    response.push_back(jumps(impulse));
+    K.col(static_cast<Eigen::Index>(r)) = of.times(response.back());
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Mat> inverse(K);
+  for (int i = 0; i < kRowCorrections; ++i) {
+    const Vec lambda = inverse.solve(residual());
+    std::vector<Vec6> change(static_cast<std::size_t>(s.system.body_count()), Vec6::Zero());
+    for (std::size_t r = 0; r < of.rows.size(); ++r)
+      for (std::size_t b = 0; b < change.size(); ++b)
+        change[b] += lambda[static_cast<Eigen::Index>(r)] * response[r][b];
+    add_jumps(s.system, change, node_jumps(change), state);
+    bond_nodes(s.system, state);
+    for (std::size_t b = 0; b < change.size(); ++b) {
+      const double size = std::max(change[b].head<3>().norm(),
+                                   s.system.length_scale() * change[b].tail<3>().norm());
+      if (size <= report.largest_change) continue;
+      report.largest_change = size;
+      report.changed_body = static_cast<int>(b);
+    }
+  }
+  report.residual = residual().lpNorm<Eigen::Infinity>();
+  return report;
 }
 
 void InstantSolver::keep_admissible(const State& state, std::vector<Vec6>& field) {

@@ -216,6 +216,11 @@ struct InstantSolver::Impl {
     }
   }
 
+  /// InstantSolver::accelerations() without rows of nodes.
+  [[nodiscard]] InstantSolution unrestrained(const State& state, std::span<const Vec6> more);
+  /// InstantSolver::project_velocities() without rows of nodes.
+  VelocityReport project_bodies(State& state);
+
   struct Outcome {
     bool solved = false, consistent = true;
     double residual = 0.0;

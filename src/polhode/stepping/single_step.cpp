@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/assert.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/engines/tree_engine.hpp>
@@ -222,6 +223,16 @@ bool SingleStep::refused(const State& state, NewtonReport& report) const {
   };
   for (int i : always_queried_)
     if (refuses(system_->interactions()[i])) return true;
+  const Nodes& nodes = system_->nodes();
+  for (int g = 0; g < nodes.group_count(); ++g) {
+    const SlideOnBeam* slide = as_slide(nodes.group(g));
+    if (!slide) continue;
+    std::string reason = slide->refusal(trial_.element_scratch.data() + nodes.first_scratch(g));
+    if (reason.empty()) continue;
+    report.reason = std::move(reason);
+    report.worst.clear();
+    return true;
+  }
   if (report.rotation <= kNoMirrorBelow) return false;
   for (const InteractionRef& ref : system_->interactions())
     if (ref.rows > 0 && refuses(ref)) return true;

@@ -5,11 +5,12 @@
 #include <Eigen/Cholesky>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/read/read_beam_name.hpp>
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/io/read/read_coupling.hpp>
 #include <polhode/io/read/time_function.hpp>
 #include <polhode/joints/registry.hpp>
-#include <polhode/loads/registry.hpp>
+#include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
 namespace polhode::io {
@@ -64,17 +65,21 @@ class LoadReader {
   }
 
  private:
-  /// A force or moment on one body.
+  /// A force or moment on one body, or one that slides along a beam.
   void read_wrench(const LoadKind& kind) {
+    const bool on_beam = acts_on_beam(kind);
+    if (on_beam) load_.a = read_first_node(context_, section_);
     if (const auto body = section_.body("body")) {
       load_.b = *body;
-      if (*body == kGround)
+      if (*body == kGround && !on_beam)
         section_.fault("body", "a load on the ground has no effect", "Name a body.");
     }
-    if (kind.vector.empty()) return;
-    if (const auto vector = section_.time_vector(kind.vector)) load_.vector = *vector;
-    load_.body_fixed = section_.boolean("body_fixed").value_or(false);
-    if (kind.turns) return;  // Independent of the point of application.
+    if (!on_beam) {
+      if (kind.vector.empty()) return;
+      if (const auto vector = section_.time_vector(kind.vector)) load_.vector = *vector;
+      load_.body_fixed = section_.boolean("body_fixed").value_or(false);
+      if (kind.turns) return;  // Independent of the point of application.
+    }
     if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
     if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
     if (const auto point = section_.vector("at_body"))
@@ -326,7 +331,7 @@ class LoadReader {
       load_.drive = d.name;
       load_.value = section_.time_number(d.name);
     }
-    if (load_.drive.empty())
+    if (load_.drive.empty() && !acts_on_beam(kind))
       section_.fault("has no function of time", format("Give one of: {}.", keys));
   }
 

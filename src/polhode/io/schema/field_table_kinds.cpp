@@ -5,7 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/joints/registry.hpp>
-#include <polhode/loads/registry.hpp>
+#include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
 namespace polhode::io {
@@ -172,6 +172,12 @@ KindTable joint_table(const JointKind& kind) {
 
 const Field kLoadBody{
     .name = "body", .kind = kBody, .meaning = "The body it acts on.", .required = true};
+const Field kLoadBeam{
+    .name = "beam", .kind = kText, .meaning = "Name of a beam without corners.", .required = true};
+const Field kSlidingBody{.name = "body",
+                         .kind = kBody,
+                         .meaning = "The body whose point stays on the beam, or ground.",
+                         .required = true};
 const Field kBodyPointAt{.name = "at",
                          .kind = kVector,
                          .dimension = kLength,
@@ -237,6 +243,10 @@ KindTable load_table(const LoadKind& kind) {
   fields.push_back(type_field("load", kind.name));
   switch (kind.place) {
     case LoadPlace::body:
+      if (acts_on_beam(kind)) {
+        fields.insert(fields.end(), {kLoadBeam, kSlidingBody, kBodyPointAt, kBodyPoint});
+        break;
+      }
       fields.push_back(kLoadBody);
       if (!kind.turns && !kind.vector.empty())
         fields.insert(fields.end(), {kBodyPointAt, kBodyPoint});
