@@ -233,6 +233,23 @@ def cable_crane(tools):
     return figure
 
 
+def trolley_on_bridge(tools):
+    m = tools.Motion("trolley_on_bridge")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.0)
+    scene.set_aspect("auto")
+    for k, alpha in tools.fades(tools.frames(m, 0.12, 0.72, 4)):
+        bridge, trolley = m.beams["bridge"][k], m.place["trolley"][k]
+        scene.plot(bridge[:, 0], 1e3 * bridge[:, 2], color=tools.BLUE, lw=1.5, alpha=alpha)
+        scene.plot(trolley[0], 1e3 * trolley[2], color=tools.RED, marker="s", ms=9, alpha=alpha)
+    scene.plot(m.place["trolley"][:, 0], 1e3 * m.place["trolley"][:, 2], color=tools.INK, lw=0.7)
+    tools.label(scene, "the bridge under the trolley, and the trolley's path", "x [m]", "z [mm]")
+    wheel = m.probe("wheel")
+    plot.plot(wheel["t"], 1e-3 * wheel["fz"], color=tools.RED)
+    plot.axhline(600 * 9.81e-3, color=tools.PALE, lw=1)
+    tools.label(plot, "force of the bridge on the trolley; grey: its weight", y="[kN]")
+    return figure
+
+
 def arm_with_muscles(tools):
     m = tools.Motion("arm_with_muscles")
     figure, scene, plot = tools.sheet(flat=True, wide=0.8)
