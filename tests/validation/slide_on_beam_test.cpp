@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/core/format.hpp>
+#include <polhode/simulation/modal.hpp>
 #include <support/run_text.hpp>
 
 namespace polhode::test::slide_on_beam_tests {
@@ -318,6 +319,34 @@ TEST(SlideOnBeam, RefusesWhatItCannotHold) {
                "loads.slide.position: begins at 1 m, but the point is at 2 m along the beam. Let "
                "it begin there, or move the body.");
   expect_fault(with("beam: rod, body: bead, force: 1, position: 2 + t"), "cannot be combined");
+}
+
+// Modes of a trolley on a spring along the beam: f = sqrt(k/m)/2π, free rotations about its point,
+// and no others that the beam does not have.
+TEST(SlideOnBeam, HasTheFrequencyOfItsSpringAlongTheBeam) {
+  const ModalAnalysis modal(io::read_model_text(R"(
+format: 1
+sections:
+  girder: {type: general, EA: 1e9, GA_y: 1e9, GA_z: 1e9, GJ: 1e6, EI_y: 2e6, EI_z: 2e6,
+           mass_per_length: 20, inertia_per_length: [0.1, 0.1, 0.1]}
+beams:
+  bridge: {points: [[0, 0, 0], [10, 0, 0]], elements: 10, section: girder}
+bodies:
+  trolley: {mass: 100, inertia: [1, 1, 1], position: [2.6, 0, 0]}
+joints:
+  left: {type: revolute, bodies: [ground, bridge.start], at: [0, 0, 0], axis: y}
+  right: {type: generic, bodies: [ground, bridge.end], at: [10, 0, 0], free: [x, ry]}
+loads:
+  slide: {type: slide_on_beam, beam: bridge, body: trolley, stiffness: 1e3, free_position: 2.6}
+analysis: {type: modes, count: 5}
+)",
+                                                "modes.yaml"));
+  ASSERT_TRUE(modal.converged()) << modal.message();
+  const std::vector<Mode>& modes = modal.report().modes;
+  ASSERT_EQ(modes.size(), 5u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(modes[k].rigid) << k;
+  EXPECT_NEAR(modes[3].frequency, std::sqrt(1e3 / 100.0) / (2.0 * kPi), 1e-5);
+  EXPECT_GT(modes[4].frequency, 3.5);  // of bending
 }
 
 // Message of a point that leaves its beam.

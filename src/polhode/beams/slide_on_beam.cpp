@@ -263,7 +263,7 @@ ElementReport SlideOnBeam::evaluate(const NodeStep& step, const double* history,
       K_xy.block<3, 1>(3 * i, k) = p_mean[i] * d + l.d(k)[i] * gap_mean;
       K_yx.block<1, 3>(k, 3 * i) = (p_end[i] * d_n1 + l.d(k)[i] * gap).transpose();
     }
-    K_yy(k, k) = -proximal(step);
+    K_yy(k, k) = proximal(step);
     K_yy(k, 3) = -d_n1.dot(T_end);
     if (free) K_yy(3, k) = d.dot(T) + 0.25 * (l.u * l.d(k)).dot(S);
   }

@@ -54,7 +54,7 @@ struct SlideReport {
 /// beam. @eq{slide-rows} @eq{slide-along}
 ///
 /// The four unknowns are eliminated within the element. So that this is possible, iterations are
-/// proximal in λ: −ε(λ − λ of the iterate before) is added to g. What converges is g = 0.
+/// proximal in λ: ε(λ − λ of the iterate before) is added to g. What converges is g = 0.
 class SlideOnBeam final : public ElementGroup, public InternalUnknowns, public ChangingSparsity {
  public:
   static constexpr const char* kKind = "slide_on_beam";
