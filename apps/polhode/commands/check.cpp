@@ -210,6 +210,8 @@ nlohmann::ordered_json cables_json(const Simulation& simulation) {
                     {"mass", cables[i].mass()}});
     if (const auto length = fibre_length(simulation, i))
       list.back()["fibre_over_optimal"] = *length;
+    if (!cables[i].around.empty())
+      list.back()["length"] = simulation.cable(static_cast<int>(i)).whole->length;
   }
   return list;
 }
@@ -223,11 +225,15 @@ void add_line_rows(const Simulation& simulation, std::vector<std::vector<std::st
   for (std::size_t i = 0; i < model.cables.size(); ++i) {
     const CableLineSpec& cable = model.cables[i];
     const std::optional<double> length = fibre_length(simulation, i);
+    std::string text =
+        length ? format("fibres at {:.3g} of their optimal length", *length)
+               : format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass());
+    if (!cable.around.empty()) {
+      text += format(", {:.6g} m long around", simulation.cable(static_cast<int>(i)).whole->length);
+      for (const ObstacleSpec& obstacle : cable.around) text += format(" '{}'", obstacle.name);
+    }
     rows.push_back({format("{} {}", length ? "muscle" : "cable", cable.name),
-                    counted(cable.pieces.size(), "piece", "pieces"),
-                    length
-                        ? format("fibres at {:.3g} of their optimal length", *length)
-                        : format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
+                    counted(cable.pieces.size(), "piece", "pieces"), text});
   }
 }
 

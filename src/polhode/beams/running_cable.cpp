@@ -32,6 +32,7 @@ RunningCable::RunningCable(RunningCableSpec spec) : spec_(std::move(spec)) {
   if (!(spec_.stiffness >= 0.0) || !(spec_.damping >= 0.0))
     refuse("", "has a negative stiffness or damping", "Give numbers that are not negative");
   if (spec_.friction > 0.0) add_friction();
+  add_windings();
   if (!spec_.muscle) return;
   const HillMuscle& m = *spec_.muscle;
   if (!(m.max_force > 0.0) || !(m.optimal_length > 0.0) || !(m.max_velocity > 0.0) ||
@@ -44,12 +45,22 @@ std::vector<TimeFunctionPtr> RunningCable::time_functions() const {
   return {spec_.tension, spec_.muscle ? spec_.muscle->activation : nullptr};
 }
 
-RunningCable::Course RunningCable::course(const NodeStep& step) const {
+RunningCable::Course RunningCable::course(const NodeStep& step, bool tangents) const {
   Course c;
+  if (!spec_.windings.empty()) add_wound(step, tangents, c);
   const double af = step.alpha_f;
   const bool middle = af == kMidpoint && step.context.dt != 0.0;
   double by_velocities = 0.0;
   for (std::size_t k = 0; k + 1 < spec_.nodes.size(); ++k) {
+    if (const int w = c.wound_of.empty() ? -1 : c.wound_of[k]; w >= 0) {
+      const WoundSpan& wound = c.wound[static_cast<std::size_t>(w)].span;
+      c.n += wound.l_n;
+      c.n1 += wound.l_n1;
+      c.change += wound.change;
+      by_velocities += wound.rate_alpha;
+      c.spans.push_back({.change = wound.change, .wound = w});
+      continue;
+    }
     const int i = spec_.nodes[k], j = spec_.nodes[k + 1];
     const Vec3 d_n = NodeStep::at(step.x_n, j) - NodeStep::at(step.x_n, i);
     const Vec3 d_n1 = NodeStep::at(step.x_n1, j) - NodeStep::at(step.x_n1, i);
@@ -158,10 +169,11 @@ RunningCable::Tension RunningCable::tension(const NodeStep& step, const Course& 
 
 ElementReport RunningCable::evaluate(const NodeStep& step, const double* history, double*,
                                      const Mat3&, const ElementSink& sink) const {
-  const Course c = course(step);
+  const Course c = course(step, sink.tangent != nullptr);
+  if (c.refused) return {.least_volume = kNoLine, .worst_element = 0};
   const Tension T = tension(step, c);
   const double af = step.alpha_f;
-  const std::size_t count = spec_.nodes.size();
+  const std::size_t count = nodes_.size();
   std::optional<Grip> grip;
   if (friction_) grip = this->grip(step, c, T.sum(), history);
   const auto N = [&](std::size_t k) {
@@ -169,17 +181,23 @@ ElementReport RunningCable::evaluate(const NodeStep& step, const double* history
   };
   std::vector<double> force(3 * count, 0.0);
   const auto at = [&](std::size_t node) { return Eigen::Map<Vec3>(force.data() + 3 * node); };
-  for (std::size_t k = 0; k + 1 < count; ++k) {
+  for (std::size_t k = 0; k < c.spans.size(); ++k) {
     at(k) += N(k) * c.spans[k].n;
     at(k + 1) -= N(k) * c.spans[k].n;
   }
-  sink.add_force(spec_.nodes, force.data());
+  for (const Wound& w : c.wound) {
+    const WoundNodes places = wound_places(w.winding);
+    for (int i = 0; i < kWoundNodes; ++i)
+      at(static_cast<std::size_t>(places[static_cast<std::size_t>(i)])) -=
+          T.sum() * w.span.n.segment<3>(3 * i);
+  }
+  sink.add_force(nodes_, force.data());
   if (!sink.tangent) return {};
   const auto size = static_cast<Eigen::Index>(3 * count);
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Matrix K = Matrix::Zero(size, size);
   Vec by_end = Vec::Zero(size);
-  for (std::size_t k = 0; k + 1 < count; ++k) {
+  for (std::size_t k = 0; k < c.spans.size(); ++k) {
     const Span& s = c.spans[k];
     const auto i = static_cast<Eigen::Index>(3 * k), j = i + 3;
     const Vec3 by_point = T.by_n1 * s.e + T.by_rate * s.rate;
@@ -191,8 +209,27 @@ ElementReport RunningCable::evaluate(const NodeStep& step, const double* history
     K.block<3, 3>(j, i) += turn;
     K.block<3, 3>(j, j) -= turn;
   }
+  const bool middle = af == kMidpoint && step.context.dt != 0.0;
+  for (const Wound& w : c.wound) {
+    const WoundNodes places = wound_places(w.winding);
+    const Vec18 rate = middle ? Vec18(w.span.e / step.context.dt) : w.span.rate;
+    for (int i = 0; i < kWoundNodes; ++i) {
+      const Eigen::Index row = 3 * places[static_cast<std::size_t>(i)];
+      by_end.segment<3>(row) +=
+          T.by_n1 * w.span.e.segment<3>(3 * i) + T.by_rate * rate.segment<3>(3 * i);
+      for (int j = 0; j < kWoundNodes; ++j)
+        K.block<3, 3>(row, 3 * places[static_cast<std::size_t>(j)]) -=
+            T.sum() * w.span.turn.block<3, 3>(3 * i, 3 * j);
+    }
+  }
   const Mat by_nodes = grip ? tension_by_nodes(*grip, c, by_end) : Mat(by_end.transpose());
-  for (std::size_t k = 0; k + 1 < count; ++k) {
+  for (const Wound& w : c.wound) {
+    const WoundNodes places = wound_places(w.winding);
+    for (int i = 0; i < kWoundNodes; ++i)
+      K.middleRows<3>(3 * places[static_cast<std::size_t>(i)]) -=
+          w.span.n.segment<3>(3 * i) * by_nodes.row(0);
+  }
+  for (std::size_t k = 0; k < c.spans.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(3 * k);
     const auto row = by_nodes.row(grip ? static_cast<Eigen::Index>(k) : 0);
     K.middleRows<3>(i) += c.spans[k].n * row;

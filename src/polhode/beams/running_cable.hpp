@@ -9,6 +9,7 @@
 #include <polhode/beams/cable_friction.hpp>
 #include <polhode/beams/hill_muscle.hpp>
 #include <polhode/beams/running_cable_report.hpp>
+#include <polhode/beams/wound_span.hpp>
 #include <polhode/core/time_function.hpp>
 #include <polhode/system/element_group.hpp>
 
@@ -27,7 +28,18 @@ struct RunningCableSpec {
   double friction = 0.0;  ///< On each point between the ends: coefficient μ [-].
   /// Wrap angles about these points in addition to the cable's change of direction [rad].
   std::vector<double> wrapped;
-  std::vector<double> pieces;  ///< With friction: free lengths from point to point [m].
+  std::vector<double> pieces;         ///< With friction: free lengths from point to point [m].
+  std::vector<WindingSpec> windings;  ///< Obstacles, at most one in a span.
+};
+
+/// Line of a running cable at an instant, with pieces on obstacles.
+struct CableLineNow {
+  std::vector<Vec3> points;     ///< World [m].
+  std::vector<double> lengths;  ///< Of the pieces between them, along the cable [m].
+  /// Of each point: its obstacle, or one of these.
+  std::vector<int> winding;
+  static constexpr int kPoint = -1;  ///< A point of the cable.
+  static constexpr int kFree = -2;   ///< Of a straight span past an obstacle.
 };
 
 /// A massless cable that runs over points of any number of bodies: one tension N in all its spans,
@@ -42,13 +54,15 @@ class RunningCable : public ElementGroup {
   /// @throws InputError for invalid numbers.
   explicit RunningCable(RunningCableSpec spec);
 
-  [[nodiscard]] std::string kind() const override { return "running cable"; }
+  /// "running cable", and the names of its obstacles.
+  [[nodiscard]] std::string kind() const override;
+  /// Least volume of a trial step in which a point is inside of an obstacle, or the cable comes to
+  /// its other side.
+  static constexpr double kNoLine = -1e300;
   [[nodiscard]] const std::string& name() const override { return spec_.name; }
   [[nodiscard]] int size() const override { return 1; }
-  [[nodiscard]] int nodes_per_element() const override {
-    return static_cast<int>(spec_.nodes.size());
-  }
-  [[nodiscard]] std::span<const int> nodes(int) const override { return spec_.nodes; }
+  [[nodiscard]] int nodes_per_element() const override { return static_cast<int>(nodes_.size()); }
+  [[nodiscard]] std::span<const int> nodes(int) const override { return nodes_; }
   [[nodiscard]] bool conservative() const override {
     return !dissipates() && !spec_.tension && !spec_.muscle;
   }
@@ -67,6 +81,8 @@ class RunningCable : public ElementGroup {
                           const double* scratch) const override;
 
   [[nodiscard]] RunningCableReport report(const NodeStep& instant, const double* history) const;
+  /// Its line at an instant.
+  [[nodiscard]] CableLineNow line(const NodeStep& instant) const;
 
  private:
   struct Span {
@@ -75,13 +91,22 @@ class RunningCable : public ElementGroup {
     Vec3 rate = Vec3::Zero();  ///< Derivative of the cable's rate by the second point [1/s].
     double per_length = 0.0;   ///< 1/l_α; 0: no direction.
     double change = 0.0;       ///< Of its length [m].
+    int wound = -1;            ///< Its entry in Course::wound; then the other members are zero.
+  };
+  /// A span that touches an obstacle in the step.
+  struct Wound {
+    int winding = 0;
+    WoundSpan span;
   };
   /// The whole cable over the step.
   struct Course {
     std::vector<Span> spans;
-    double n = 0.0, n1 = 0.0;  ///< Length at t_n, t_{n+1} [m].
-    double change = 0.0;       ///< Of the length, without cancellation [m].
-    double rate = 0.0;         ///< At t_{n+αf} [m/s].
+    std::vector<Wound> wound;
+    std::vector<int> wound_of;  ///< Of each span: its entry there, −1: none. Empty: none at all.
+    bool refused = false;       ///< A point is inside of an obstacle, or the cable jumps over it.
+    double n = 0.0, n1 = 0.0;   ///< Length at t_n, t_{n+1} [m].
+    double change = 0.0;        ///< Of the length, without cancellation [m].
+    double rate = 0.0;          ///< At t_{n+αf} [m/s].
   };
   /// Parts of the tension, and the derivatives of their sum by L_{n+1} and by the rate.
   struct Tension {
@@ -101,7 +126,13 @@ class RunningCable : public ElementGroup {
   struct Law {
     double value = 0.0, slope = 0.0;
   };
-  [[nodiscard]] Course course(const NodeStep& step) const;
+  [[nodiscard]] Course course(const NodeStep& step, bool tangents = false) const;
+  void add_windings();
+  /// Adds spans around obstacles to a course.
+  void add_wound(const NodeStep& step, bool tangents, Course& c) const;
+  /// Nodes of the System, and of the element, of an obstacle's span.
+  [[nodiscard]] WoundNodes wound_nodes(int winding) const;
+  [[nodiscard]] WoundNodes wound_places(int winding) const;
   [[nodiscard]] Tension tension(const NodeStep& step, const Course& c) const;
   /// @param mean  Tension N̄ [N].
   [[nodiscard]] Grip grip(const NodeStep& step, const Course& c, double mean,
@@ -128,6 +159,8 @@ class RunningCable : public ElementGroup {
   [[nodiscard]] Fibre fibre(double length) const;
 
   RunningCableSpec spec_;
+  std::vector<int> nodes_;       ///< Points, then the frames of the obstacles.
+  std::vector<int> winding_of_;  ///< Of each span, −1: none.
   std::optional<CableFriction> friction_;
 };
 

@@ -7,6 +7,7 @@
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/compile/beam_contact.hpp>
 #include <polhode/compile/beam_mesh.hpp>
+#include <polhode/compile/cable_obstacles.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/math/exp_map.hpp>
@@ -217,9 +218,10 @@ int add_cable(Model& model, CableLineSpec cable) {
         where + ".slides",
         format("cannot be combined with {}", cable.contact ? "contact" : "mass_per_length"),
         "A sliding cable has neither mass nor contact: leave one of them out");
+  const std::vector<StartSpan> spans = start_spans(model, cable);
   std::vector<double> lengths;
   for (std::size_t i = 1; i < cable.through.size(); ++i) {
-    lengths.push_back((position(cable.through[i]) - position(cable.through[i - 1])).norm());
+    lengths.push_back(spans[i - 1].length());
     const AttachmentSpec &a = cable.through[i - 1], &b = cable.through[i];
     if (!(lengths.back() > 0.0) && !cable.free_length)
       throw InputError(where + ".through", format("points {} and {} coincide", i, i + 1),
@@ -236,8 +238,10 @@ int add_cable(Model& model, CableLineSpec cable) {
                      "Give a free length above zero and distinct points");
 
   if (cable.mass_per_length == 0.0) {
-    for (std::size_t i = 0; i < lengths.size(); ++i)
-      cable.pieces.push_back({cable.through[i], cable.through[i + 1], stretch * lengths[i], 0.0});
+    for (const StartSpan& span : spans)
+      for (std::size_t i = 0; i < span.lengths.size(); ++i)
+        cable.pieces.push_back(
+            {span.points[i], span.points[i + 1], stretch * span.lengths[i], 0.0});
   } else {
     const int first = static_cast<int>(model.bodies.size());
     const auto node = [&](const Vec3& at, const Vec3& v) {

@@ -11,6 +11,7 @@
 #include <polhode/compile/build_slide.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>
+#include <polhode/compile/cable_obstacles.hpp>
 #include <polhode/compile/centrifugal_forces.hpp>
 #include <polhode/compile/describe_load.hpp>
 #include <polhode/compile/inerter_mass.hpp>
@@ -343,6 +344,18 @@ class Builder {
     return system_.add_node(node);
   }
 
+  /// Adds the frame of an obstacle: its middle, and a point along each of its axes.
+  WindingSpec add_obstacle(const ObstacleSpec& obstacle) {
+    WindingSpec w{.name = obstacle.name, .span = obstacle.after, .roller = roller_of(obstacle)};
+    w.arm = w.roller.size();
+    w.frame[0] = add_bonded_node(obstacle.at);
+    for (std::size_t k = 0; k < 3; ++k)
+      w.frame[k + 1] = add_bonded_node(
+          {obstacle.at.body,
+           obstacle.at.Z + w.arm * obstacle.axes.col(static_cast<Eigen::Index>(k))});
+    return w;
+  }
+
   void add_running_cable(const CableLineSpec& cable) {
     const std::string where = format("cables.{}", cable.name);
     RunningCableSpec r;
@@ -354,6 +367,10 @@ class Builder {
       r.nodes.push_back(add_bonded_node(at));
       moves = moves || system_body(at.body) != kGround;
     }
+    for (const ObstacleSpec& obstacle : cable.around) {
+      if (is_point_mass(obstacle.at.body)) refuse_turning(where, obstacle.at.body);
+      moves = moves || system_body(obstacle.at.body) != kGround;
+    }
     if (!moves)
       throw InputError(where, "connects no moving body",
                        "Name at least one body that is not fixed, or leave it out");
@@ -364,7 +381,9 @@ class Builder {
     r.muscle = cable.muscle;
     r.friction = cable.friction;
     for (const double turns : cable.wraps) r.wrapped.push_back(2.0 * std::numbers::pi * turns);
-    for (const CableLineSpec::Piece& piece : cable.pieces) r.pieces.push_back(piece.free_length);
+    if (cable.friction > 0.0)
+      for (const CableLineSpec::Piece& piece : cable.pieces) r.pieces.push_back(piece.free_length);
+    for (const ObstacleSpec& obstacle : cable.around) r.windings.push_back(add_obstacle(obstacle));
     auto elements = std::make_unique<RunningCable>(std::move(r));
     SystemMap::Running& running = map_.running_cable.back();
     running.cable = elements.get();

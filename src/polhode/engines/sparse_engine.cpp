@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polhode/beams/running_cable.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/equations/line_search.hpp>
@@ -114,8 +115,11 @@ bool SparseEngine::prepare_nodes(const State& state, Trial& trial, bool factor, 
       return elements.least_volume > 0.0 ? kAdmissible : kInadmissible;
     };
     if (!before_.kept() || !search_along(kUntilAdmissible, 1.0, 0.5 * part_, apply, merit)) {
-      done.reason = format("{} is inverted (det F = {:.2g})",
-                           nodes_->element_name(elements.worst_element), elements.least_volume);
+      const std::string element = nodes_->element_name(elements.worst_element);
+      done.reason =
+          elements.least_volume == RunningCable::kNoLine
+              ? format("{} has a point inside of an obstacle, or comes to its other side", element)
+              : format("{} is inverted (det F = {:.2g})", element, elements.least_volume);
       return false;
     }
   }

@@ -55,6 +55,7 @@ void append_part(Model& whole, Model part, const std::string& prefix) {
   }
   for (CableLineSpec& cable : part.cables) {
     for (AttachmentSpec& point : cable.through) shift(point.body);
+    for (ObstacleSpec& obstacle : cable.around) shift(obstacle.at.body);
     for (CableLineSpec::Piece& piece : cable.pieces) {
       shift(piece.a.body);
       shift(piece.b.body);

@@ -74,6 +74,17 @@ struct AttachmentSpec {
   Vec3 Z = Vec3::Zero();  ///< From the centre of mass, body axes; ground: world [m].
 };
 
+/// A sphere, cylinder or ellipsoid fixed to a body, which a cable runs around.
+struct ObstacleSpec {
+  std::string name;
+  SourceLocation place;
+  AttachmentSpec at;              ///< Its centre, or a point of the cylinder's axis.
+  Mat3 axes = Mat3::Identity();   ///< As columns, body components (ground: world).
+  Vec3 semi_axes = Vec3::Zero();  ///< Along these; infinite along the axis of a cylinder [m].
+  std::optional<Vec3> side{};  ///< Direction to the side of the cable, as axes; none: the shorter.
+  int after = 0;               ///< It is between this point of the cable and the next.
+};
+
 /// Contact of a cable as a round rope about its centre line.
 struct CableContactSpec {
   double radius = 0.0;   ///< [m]
@@ -102,6 +113,7 @@ struct CableLineSpec {
   std::vector<double> wraps;
   TimeFunctionPtr tension;           ///< Of a running cable, in addition to its elastic one [N].
   std::optional<HillMuscle> muscle;  ///< Active force of a muscle; the cable runs over its points.
+  std::vector<ObstacleSpec> around;  ///< Obstacles of a running cable, one between two points.
 
   /// Segments, filled in by add_cable().
   struct Piece {

@@ -273,6 +273,12 @@ class Placer {
 
   void place_cable(CableLineSpec& cable) const {
     for (AttachmentSpec& point : cable.through) point.Z = carried(point.body, point.Z);
+    for (ObstacleSpec& obstacle : cable.around) {
+      obstacle.at.Z = carried(obstacle.at.body, obstacle.at.Z);
+      const Mat3& turn = obstacle.at.body == kGround ? A_ : S_;
+      if (obstacle.side) obstacle.side = Vec3(turn * *obstacle.side);
+      obstacle.axes = turn * obstacle.axes;  // of either hand: the surface is its own mirror image
+    }
     for (CableLineSpec::Piece& piece : cable.pieces)
       for (AttachmentSpec* end : {&piece.a, &piece.b}) end->Z = carried(end->body, end->Z);
   }

@@ -59,6 +59,31 @@ void add_ends(CableReport& report, const Simulation& simulation, const CableLine
   for (const CableLineSpec::Piece& piece : spec.pieces) add(piece.b);
 }
 
+/// Moves the points between those of the cable to its present line. On an obstacle they have the
+/// velocity of its body, elsewhere one between those of the neighbouring points.
+void lay_around(CableReport& report, const Simulation& simulation, const CableLineSpec& spec,
+                const CableLineNow& line) {
+  report.length = line.lengths;
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const int body = spec.pieces[i > 0 ? i - 1 : 0].b.body;
+    report.position[i] = line.points[i];
+    if (line.winding[i] == CableLineNow::kPoint) {
+      const Vec3 first = report.velocity[before], last = report.velocity[i];
+      for (std::size_t k = before + 1; k < i; ++k)
+        if (line.winding[k] == CableLineNow::kFree)
+          report.velocity[k] = first + static_cast<double>(k - before) /
+                                           static_cast<double>(i - before) * (last - first);
+      before = i;
+    } else if (line.winding[i] >= 0 && body == kGround) {
+      report.velocity[i].setZero();
+    } else if (line.winding[i] >= 0) {
+      const BodyMotion m = simulation.body(body);
+      report.velocity[i] = m.v + (m.q * m.W).cross(line.points[i] - m.r);
+    }
+  }
+}
+
 }  // namespace
 
 CableReport running_cable_report(const Simulation& simulation, const CableLineSpec& spec,
@@ -67,12 +92,15 @@ CableReport running_cable_report(const Simulation& simulation, const CableLineSp
   add_ends(report, simulation, spec);
   StepContext still;
   still.t_n = simulation.time();
-  report.whole = cable.report(
-      node_instant(simulation.system(), simulation.state(), still),
-      simulation.state().element_history.data() + simulation.system().nodes().first_history(group));
+  const NodeStep instant = node_instant(simulation.system(), simulation.state(), still);
+  report.whole = cable.report(instant, simulation.state().element_history.data() +
+                                           simulation.system().nodes().first_history(group));
+  if (!spec.around.empty()) lay_around(report, simulation, spec, cable.line(instant));
   for (std::size_t k = 0; k < spec.pieces.size(); ++k) {
-    report.tension.push_back(report.whole->tensions[k]);
-    report.length.push_back((report.position[k + 1] - report.position[k]).norm());
+    report.tension.push_back(spec.around.empty() ? report.whole->tensions[k]
+                                                 : report.whole->tension);
+    if (spec.around.empty())
+      report.length.push_back((report.position[k + 1] - report.position[k]).norm());
     report.strain.push_back(report.whole->length / spec.length() - 1.0);
   }
   return report;

@@ -67,6 +67,9 @@ void check_cable(const CableLineSpec& cable) {
     refuse(format("the cable '{}' has contact", cable.name), "which is not smooth", kOrderTwo);
   if (cable.muscle)
     refuse(format("'{}' is a muscle", cable.name), "whose curves have kinks", kOrderTwo);
+  if (!cable.around.empty())
+    refuse(format("the cable '{}' runs around an obstacle", cable.name),
+           "where its stiffness jumps as it lifts off", kOrderTwo);
   if (cable.tension_only)
     refuse(format("the cable '{}' can go slack", cable.name), "where its force has a kink",
            "Write tension_only: false if it stays taut, or use order: 2");

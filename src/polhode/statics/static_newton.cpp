@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/beams/running_cable.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/dynamics/load_step.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
@@ -347,6 +348,9 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   ElementReport elements = assemble();
   const auto inverted = [&] {
     step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
+    if (elements.least_volume == RunningCable::kNoLine)
+      return fail(
+          "a point of a cable is inside of an obstacle, or the cable comes to its other side");
     return fail(format("an element is inverted (det F = {:.2g})", elements.least_volume));
   };
   if (!(elements.least_volume > 0.0)) return inverted();

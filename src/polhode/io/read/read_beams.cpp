@@ -161,11 +161,21 @@ class SectionReader {
   Section section_;
 };
 
-/// Reports an error found while a beam or cable was meshed, at the key that it names.
-void tell(Section& section, const InputError& e) {
-  const std::string key = e.where().substr(std::min(e.where().size(), section.path("").size()));
-  if (section.has(key))
-    section.fault(key, e.what_is_wrong(), e.hint() + ".");
+/// Reports an error found while a beam or cable was meshed, at the key that it names, or the
+/// nearest one above.
+void tell(ReadContext& context, Section& section, const InputError& e) {
+  std::string keys = e.where().substr(std::min(e.where().size(), section.path("").size()));
+  const SourceNode* node = nullptr;
+  while (!keys.empty()) {
+    const std::size_t dot = std::min(keys.find('.'), keys.size());
+    const std::string key = keys.substr(0, dot);
+    const SourceNode* next = node ? node->find(key) : section.find(key);
+    if (!next) break;
+    node = next;
+    keys.erase(0, dot + 1);
+  }
+  if (node)
+    context.fault(*node, e.where(), e.what_is_wrong(), e.hint() + ".");
   else
     section.fault(e.what_is_wrong(), e.hint() + ".");
 }
@@ -305,7 +315,7 @@ class BeamReader {
     try {
       add_beam(context_.model, beam_);
     } catch (const InputError& e) {
-      tell(section_, e);
+      tell(context_, section_, e);
       return false;
     }
     name_parts(context_, bodies, joints, true);
@@ -354,6 +364,7 @@ class CableReader {
     if (const SourceNode* node = section_.find("through")) read_through(*node);
     read_cable_pull(context_, section_, cable_);
     section_.read_into(cable_);
+    read_obstacles(context_, section_, cable_);
     if (const SourceNode* node = section_.find("contact")) read_contact(*node);
     if (context_.diagnostics.size() == before) divide();
   }
@@ -416,7 +427,7 @@ class CableReader {
     try {
       add_cable(context_.model, cable_);
     } catch (const InputError& e) {
-      tell(section_, e);
+      tell(context_, section_, e);
       return;
     }
     name_parts(context_, bodies, joints, true);

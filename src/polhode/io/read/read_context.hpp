@@ -277,6 +277,8 @@ void read_cables(ReadContext& context, const SourceNode& node);
 /// Reads the tension of a cable: stiffness, given tension, muscle; and whether it runs over its
 /// points.
 void read_cable_pull(ReadContext& context, Section& section, CableLineSpec& cable);
+/// Reads the obstacles of a cable, after its points.
+void read_obstacles(ReadContext& context, Section& section, CableLineSpec& cable);
 void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::string& path,
                      MeshSpec& mesh);
 void read_solids(ReadContext& context, const SourceNode& node);

@@ -190,12 +190,14 @@ class Fingerprint {
   }
   void one(const CableLineSpec::Piece& p) { add(p.a, p.b, p.free_length, p.mass); }
   void one(const HillMuscle& m) { add_fields(m, muscle_fields()); }
+  void one(const ObstacleSpec& o) { add(o.name, o.at, o.axes, o.semi_axes, o.side, o.after); }
   void one(const CableLineSpec& c) {
     add(c.name, c.through, c.stiffness);
     add_fields(c, cable_fields());
     add(c.contact, c.pieces);
     if (c.slides) add(c.tension, c.muscle);
     if (c.friction > 0.0) add(c.friction, c.wraps);
+    if (!c.around.empty()) add(c.around);
   }
   void one(const ContactLawSpec& l) { add_fields(l, contact_law_fields()); }
   void one(const ContactMaterialSpec& m) {

@@ -28,6 +28,7 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&cable_fields());
   tables.push_back(&cable_contact_fields());
   tables.push_back(&muscle_fields());
+  tables.push_back(&obstacle_fields());
   tables.push_back(&solid_fields());
   tables.push_back(&solid_mesh_fields());
   tables.push_back(&solid_contact_fields());

@@ -150,6 +150,7 @@ const FieldTable& beam_contact_fields();
 const FieldTable& cable_contact_fields();
 const FieldTable& cable_fields();
 const FieldTable& muscle_fields();
+const FieldTable& obstacle_fields();
 const FieldTable& solid_fields();
 const FieldTable& solid_mesh_fields();
 const std::vector<KindTable>& mesh_generator_tables();

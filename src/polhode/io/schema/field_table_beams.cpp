@@ -253,6 +253,10 @@ const FieldTable& cable_fields() {
            .kind = kSection,
            .meaning = "The cable is a muscle with its path through the points.",
            .table = "muscle"},
+          {.name = "around",
+           .kind = kNamed,
+           .meaning = "Obstacles by name, which a sliding cable or muscle runs around.",
+           .table = "obstacle"},
           {.name = "strain",
            .kind = kChoice,
            .meaning = "Measure of strain: l/L - 1, or (l^2/L^2 - 1)/2.",
@@ -333,6 +337,56 @@ const FieldTable& muscle_fields() {
            .meaning = "Activation over time, from 0 to 1.",
            .required = true,
            .member = &HillMuscle::activation},
+      }};
+  return table;
+}
+
+const FieldTable& obstacle_fields() {
+  static const FieldTable table{
+      "obstacle",
+      "A sphere, cylinder or ellipsoid fixed to a body, without mass or friction: between two of "
+      "its points the cable is the shortest line around it, straight where it is not in the way.",
+      {
+          {.name = "type",
+           .kind = kChoice,
+           .meaning = "Its surface; a cylinder has no ends.",
+           .required = true,
+           .choices = {"sphere", "cylinder", "ellipsoid"}},
+          {.name = "body", .kind = kBody, .meaning = "Its body, or ground.", .required = true},
+          {.name = "at",
+           .kind = kVector,
+           .dimension = kLength,
+           .meaning = "Its centre, of a cylinder a point of the axis, in the coordinates of the "
+                      "body (ground: world).",
+           .standard = "[0, 0, 0]"},
+          {.name = "radius",
+           .kind = kNumber,
+           .dimension = kLength,
+           .meaning = "Radius of a sphere or cylinder.",
+           .range = kPositive},
+          {.name = "semi_axes",
+           .kind = kVector,
+           .dimension = kLength,
+           .meaning = "Of an ellipsoid: half of its sizes along its axes."},
+          {.name = "axis",
+           .kind = kDirection,
+           .meaning = "Of a cylinder: its axis, in body coordinates (ground: world).",
+           .standard = "z"},
+          {.name = "orientation",
+           .kind = kSection,
+           .meaning = "Of an ellipsoid: rotation of its axes relative to the body's.",
+           .standard = "those of the body",
+           .table = "orientation"},
+          {.name = "side",
+           .kind = kDirection,
+           .meaning = "Direction from its centre to the side on which the cable passes, in body "
+                      "coordinates (ground: world): it never crosses the opposite half-plane.",
+           .standard = "the shorter way"},
+          {.name = "after",
+           .kind = kInteger,
+           .meaning = "Number of the point of the cable before it, from 1.",
+           .standard = "1, of a cable with two points",
+           .range = {1.0, 1e6}},
       }};
   return table;
 }
