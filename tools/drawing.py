@@ -30,6 +30,7 @@ class Motion:
             names = [n.decode() for n in file["packed/bodies/names"][:]]
             count = len(self.t)
             place, turn = file["packed/bodies/position"][:count], file["packed/bodies/orientation"][:count]
+            self.cables = {n: cable["position"][:count] for n, cable in file.get("cables", {}).items()}
             self.beams = {n: beam["nodes/position"][:count] for n, beam in file.get("beams", {}).items()}
         self.place = {n: place[:, i] for i, n in enumerate(names)}
         self.turn = {n: rotation(turn[:, i]) for i, n in enumerate(names)}

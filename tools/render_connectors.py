@@ -273,6 +273,32 @@ def arm_with_muscles(tools):
     return figure
 
 
+def elbow(tools):
+    m = tools.Motion("elbow")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.8)
+    around = np.linspace(0, 2 * np.pi, 60)
+    scene.plot([0, 0], [0, 0.3], color=tools.PALE, lw=7, zorder=0)
+    scene.fill(0.018 * np.cos(around), 0.018 * np.sin(around), color=tools.PALE, zorder=0)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 0.8, 3)):
+        bone = m.points("forearm", [[-0.15, 0, 0], [0.18, 0, 0]], k)
+        scene.plot(bone[:, 0], bone[:, 2], color=tools.GOLD, lw=4, alpha=alpha)
+        weight = m.place["weight"][k]
+        scene.plot(weight[0], weight[2], color=tools.INK, marker="o", ms=13, alpha=alpha)
+        for name, colour in (("biceps", tools.RED), ("triceps", tools.BLUE)):
+            scene.plot(m.cables[name][k][:, 0], m.cables[name][k][:, 2], color=colour, lw=2, alpha=alpha)
+    scene.set_xlim(-0.05, 0.4)
+    tools.label(scene, "biceps (red), triceps (blue)", "x [m]", "z [m]")
+    joint = m.probe("elbow")
+    for name, colour in (("biceps", tools.RED), ("triceps", tools.BLUE)):
+        probe = m.probe(name)
+        moves = np.abs(joint["rate rz"]) > 0.3
+        plot.plot(np.degrees(joint["rz"][moves]), 1e3 * np.abs(probe["rate"] / joint["rate rz"])[moves], color=colour, marker=".", ms=3, ls="none", label=name)
+    plot.axhline(18, color=tools.PALE, lw=1)
+    plot.legend(frameon=False)
+    tools.label(plot, "moment arms [mm]; grey: the bone's radius", "angle of the elbow [deg]")
+    return figure
+
+
 def bicycle(tools):
     figure, scene, plot = tools.sheet((24, -60), wide=1.1)
     m = tools.Motion("bicycle")

@@ -17,7 +17,7 @@ MECHANISMS = ("tumbling_body", "heavy_top", "double_pendulum", "spatial_slider_c
 CONTACT = ("bouncing_ball", "incline", "newtons_cradle", "tippe_top", "rattleback", "stack", "card_house", "rolling_coin",
            "spheres_in_a_bin", "gear_pair", "crossed_lines")
 CONNECTORS = ("planetary_gearbox", "suspension_corner", "shaking_table", "stewart_platform", "three_rrr", "delta_robot", "geneva_drive", "excavator", "trebuchet",
-              "cable_crane", "trolley_on_bridge", "arm_with_muscles", "bicycle", "falling_cat", "governor_on_motor", "stick_slip")
+              "cable_crane", "trolley_on_bridge", "arm_with_muscles", "elbow", "bicycle", "falling_cat", "governor_on_motor", "stick_slip")
 
 
 def picture(name):

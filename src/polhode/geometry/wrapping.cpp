@@ -7,7 +7,6 @@
 #include <Eigen/QR>
 
 #include <polhode/geometry/wrapping.hpp>
-#include <polhode/math/gauss_rule.hpp>
 
 namespace polhode::geometry {
 
@@ -101,10 +100,11 @@ Course start(const Roller& roller, const Around& a, const Vec3& p, const Vec3& q
   }
   c.x = roller.semi_axes.cwiseProduct(A);
   c.t = roller.semi_axes.cwiseProduct(T).normalized();
-  for (const auto& [place, weight] : kGauss) {
+  const auto stretch = [&](double place) {
     const double phi = a.beta_p + place * a.arc() + 0.5 * std::numbers::pi;
-    c.arc += weight * a.arc() * roller.semi_axes.cwiseProduct(a.at(phi)).norm();
-  }
+    return roller.semi_axes.cwiseProduct(a.at(phi)).norm();
+  };
+  c.arc = a.arc() / 6.0 * (stretch(0.0) + 4.0 * stretch(0.5) + stretch(1.0));
   return c;
 }
 
