@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include <polhode/beams/beam_element.hpp>
@@ -344,23 +344,9 @@ class Builder {
     return system_.add_node(node);
   }
 
-  /// Adds the frame of an obstacle: its middle, and a point along each of its axes.
-  WindingSpec add_obstacle(const ObstacleSpec& obstacle) {
-    WindingSpec w{.name = obstacle.name, .span = obstacle.after, .roller = roller_of(obstacle)};
-    w.arm = w.roller.size();
-    w.frame[0] = add_bonded_node(obstacle.at);
-    for (std::size_t k = 0; k < 3; ++k)
-      w.frame[k + 1] = add_bonded_node(
-          {obstacle.at.body,
-           obstacle.at.Z + w.arm * obstacle.axes.col(static_cast<Eigen::Index>(k))});
-    return w;
-  }
-
   void add_running_cable(const CableLineSpec& cable) {
     const std::string where = format("cables.{}", cable.name);
-    RunningCableSpec r;
-    r.name = cable.name;
-    r.damping = cable.damping;
+    RunningCableSpec r = running_cable_spec(cable);
     bool moves = false;
     for (const AttachmentSpec& at : cable.through) {
       if (is_point_mass(at.body) && !at.Z.isZero(0.0)) refuse_turning(where, at.body);
@@ -374,16 +360,10 @@ class Builder {
     if (!moves)
       throw InputError(where, "connects no moving body",
                        "Name at least one body that is not fixed, or leave it out");
-    r.free_length = cable.length();
-    r.stiffness = cable.stiffness / r.free_length;
-    r.tension_only = cable.tension_only;
-    r.tension = cable.tension;
-    r.muscle = cable.muscle;
-    r.friction = cable.friction;
-    for (const double turns : cable.wraps) r.wrapped.push_back(2.0 * std::numbers::pi * turns);
-    if (cable.friction > 0.0)
-      for (const CableLineSpec::Piece& piece : cable.pieces) r.pieces.push_back(piece.free_length);
-    for (const ObstacleSpec& obstacle : cable.around) r.windings.push_back(add_obstacle(obstacle));
+    for (std::size_t k = 0; k < cable.around.size(); ++k) {
+      const std::array<AttachmentSpec, 4> frame = frame_of(cable.around[k]);
+      for (std::size_t i = 0; i < 4; ++i) r.windings[k].frame[i] = add_bonded_node(frame[i]);
+    }
     auto elements = std::make_unique<RunningCable>(std::move(r));
     SystemMap::Running& running = map_.running_cable.back();
     running.cable = elements.get();

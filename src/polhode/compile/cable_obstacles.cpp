@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <numbers>
 #include <numeric>
 
 #include <polhode/compile/cable_obstacles.hpp>
@@ -93,6 +94,36 @@ geometry::Roller roller_of(const ObstacleSpec& obstacle) {
   geometry::Roller roller{obstacle.semi_axes};
   if (obstacle.side) roller.side = Vec3(obstacle.axes.transpose() * *obstacle.side);
   return roller;
+}
+
+std::array<AttachmentSpec, 4> frame_of(const ObstacleSpec& obstacle) {
+  std::array<AttachmentSpec, 4> frame;
+  frame.fill(obstacle.at);
+  const double arm = roller_of(obstacle).size();
+  for (std::size_t k = 0; k < 3; ++k)
+    frame[k + 1].Z += arm * obstacle.axes.col(static_cast<Eigen::Index>(k));
+  return frame;
+}
+
+RunningCableSpec running_cable_spec(const CableLineSpec& cable) {
+  RunningCableSpec r;
+  r.name = cable.name;
+  r.damping = cable.damping;
+  r.free_length = cable.length();
+  r.stiffness = cable.stiffness / r.free_length;
+  r.tension_only = cable.tension_only;
+  r.tension = cable.tension;
+  r.muscle = cable.muscle;
+  r.friction = cable.friction;
+  for (const double turns : cable.wraps) r.wrapped.push_back(2.0 * std::numbers::pi * turns);
+  if (cable.friction > 0.0)
+    for (const CableLineSpec::Piece& piece : cable.pieces) r.pieces.push_back(piece.free_length);
+  for (const ObstacleSpec& obstacle : cable.around) {
+    WindingSpec w{.name = obstacle.name, .span = obstacle.after, .roller = roller_of(obstacle)};
+    w.arm = w.roller.size();
+    r.windings.push_back(std::move(w));
+  }
+  return r;
 }
 
 double StartSpan::length() const { return std::accumulate(lengths.begin(), lengths.end(), 0.0); }

@@ -4,6 +4,6 @@
 
 namespace polhode::test::beams_page_tests {
 
-TEST(BeamsPage, EveryModelRuns) { EXPECT_EQ(run_page_examples("docs/reference/beams.md"), 4); }
+TEST(BeamsPage, EveryModelRuns) { EXPECT_EQ(run_page_examples("docs/reference/beams.md"), 5); }
 
 }  // namespace polhode::test::beams_page_tests
