@@ -17,7 +17,7 @@ using Mat6x18 = Eigen::Matrix<double, 6, 3 * kWoundNodes>;
 constexpr double kFirst = 0.21132486540518712, kSecond = 0.78867513459481288;
 /// Parts of the obstacle's size: a step of the points from which on the rule is corrected, and
 /// likewise where the cable lifts off or touches within it.
-constexpr double kFar = 1e-3, kNear = 1e-6;
+constexpr double kCorrected = 1e-3, kCorrectedAtTouch = 1e-6;
 /// Rounding of the change of a length, by its bound and by the size.
 constexpr double kJump = 1e-9, kRound = 1e-11;
 
@@ -174,7 +174,8 @@ WoundSpan wound_span(const WindingSpec& winding, const WoundNodes& nodes, const 
   Mean mean = mean_gradient(winding.roller, pi_n, move, shift, *low, *end, tangents);
   const Vec6 way = (1.0 - shift) * move;
   const bool changes = low->touches != end->touches;
-  if (way.norm() > (changes ? kNear : kFar) * size) correct(mean, way, shift, *low, *end);
+  if (way.norm() > (changes ? kCorrectedAtTouch : kCorrected) * size)
+    correct(mean, way, shift, *low, *end);
 
   const Mat6x18 D_alpha = derivative(x_alpha, winding.arm), D_n1 = derivative(x_n1, winding.arm);
   const Vec6 pi_rate = D_alpha * flat(v);
