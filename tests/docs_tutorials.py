@@ -7,6 +7,7 @@ states are compared with closed forms and with equations integrated here.
 * lecturer: Jacobi's elliptic functions for the free body, and balances computed from its rates.
 * robotics: Newton-Euler equations of the arm (docs_arm.py), integrated.
 * spacecraft: the pendulum's elliptic integral for the libration, the integral of the gradient's moment, Euler-Bernoulli beams on a hub.
+* biomechanics: the equation of the elbow's angle, with tangents and arcs in closed form (docs_elbow.py).
 
 POLHODE names the program. Sweeps need the Python package; python/tests/test_docs.py runs them and compares them with what is here.
 """
@@ -21,6 +22,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import docs_arm  # noqa: E402
+import docs_elbow  # noqa: E402
 import docs_numbers  # noqa: E402
 import docs_snippets  # noqa: E402
 
@@ -351,6 +353,44 @@ def spacecraft(text, folder):
     return f"libration within {late:.1e} s, momentum of gravity within {balance:.1e} N m s, modes {found[0]:.4f} and {found[1]:.4f} Hz", late / 0.05
 
 
+def biomechanics(text, folder):
+    arms = {name: table(folder / f"arms.results/probes/{name}.csv") for name in docs_elbow.MUSCLES}
+    worst = 0.0
+    for name, found in arms.items():
+        for t, length, rate in zip(found["t"], found["length"], found["rate"]):
+            exact, arm = docs_elbow.path(name, docs_elbow.START + t)
+            worst = max(worst, abs(length - exact), 1e-3 * abs(rate - arm))
+    assert worst < 1e-10, worst
+    without = table(folder / "straight.results/probes/triceps.csv")
+    assert max(abs(rate - docs_elbow.straight("triceps", docs_elbow.START + t)[1]) for t, rate in zip(without["t"], without["rate"])) < 1e-7
+    assert abs(stated(text, r"up to ([\d.]+) mm when") + 1e3 * min(arms["biceps"]["rate"])) < 0.06
+    assert abs(stated(text, r"starts free, with ([\d.]+) mm") - 1e3 * arms["triceps"]["rate"][0]) < 0.06
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        middle = (low + high) / 2
+        length = docs_elbow.path("triceps", docs_elbow.START + middle)[0]
+        low, high = (middle, high) if length == docs_elbow.straight("triceps", docs_elbow.START + middle)[0] else (low, middle)
+    assert abs(stated(text, r"touches the bone after ([\d.]+) s") - low) < 6e-4, low
+    zero = changes_of_sign(without["t"], without["rate"])
+    assert len(zero) == 1 and abs(stated(text, r"falls to zero after ([\d.]+) s") - zero[0]) < 6e-4, zero
+
+    elbow, biceps = table(folder / "arm.results/probes/elbow.csv"), table(folder / "arm.results/probes/biceps.csv")
+    exact = docs_elbow.Elbow().motion(elbow["t"])
+    off = max(abs(a - b[0]) for a, b in zip(elbow["rz"], exact))
+    assert abs(stated(text, r"pulls with up to ([\d.]+) N") - max(biceps["tension"])) < 0.06, max(biceps["tension"])
+    assert abs(stated(text, r"swings up to ([\d.]+) rad") - max(elbow["rz"])) < 6e-4, max(elbow["rz"])
+    shown = row_of_table(text, "angle after 3 s [rad]")
+    for angle, activation, results in zip(shown, (0.25, 0.35, 0.5), ("weak", "arm", "strong")):
+        run = table(folder / f"{results}.results/probes/elbow.csv")
+        last = docs_elbow.Elbow(activation).motion([3.0])[-1][0]
+        assert abs(run["rz"][-1] - last) < 3e-5 and abs(angle - last) < 8e-5, (activation, run["rz"][-1], last)
+    found = json.loads((folder / "lift.certificate/certificate.json").read_text())
+    angle = next(q for q in found["quantities"] if "rz" in q["columns"])
+    assert abs(angle["order"] - stated(text, r"converges with order ([\d.]+), although")) < 0.05, angle["order"]
+    assert 0.5 * off < angle["own_error"] < 2 * off and stated(text, r"an error of ([\d.e-]+) rad") == float(f"{angle['own_error']:.1e}"), (angle, off)
+    return f"lengths within {worst:.1e} m, angle within {off:.1e} rad", off / 2e-5
+
+
 def check(page, compare, folder):
     """What is said about a page, and the largest error over what is allowed."""
     count, faults = docs_snippets.run_page(page, folder)
@@ -361,7 +401,7 @@ def check(page, compare, folder):
 
 def main():
     faults = 0
-    for compare in (machine_designer, lecturer, robotics, spacecraft):
+    for compare in (machine_designer, lecturer, robotics, spacecraft, biomechanics):
         with tempfile.TemporaryDirectory() as folder:
             try:
                 said, error = check(PAGES / f"{compare.__name__}.md", compare, pathlib.Path(folder))
