@@ -107,7 +107,7 @@ std::string summary_table(const RunSummary& s, bool colour) {
   const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
   std::vector<std::vector<std::string>> rows{
       {"time reached", format("{:.6g} s", s.t)},
-      {"steps", format("{}", s.steps), format("{} rejected, order {}", s.rejected_steps, s.order)},
+      {"steps", format("{}", s.steps), format("{} rejected, {}", s.rejected_steps, s.scheme)},
       {"Newton iterations", format("{}", s.newton_iterations),
        format("{:.2f} a step", static_cast<double>(s.newton_iterations) / steps)},
       {"energy drift", small(s.energy_drift),

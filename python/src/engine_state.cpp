@@ -83,7 +83,7 @@ void Engine::put(const std::vector<BodyMotion>& moving, const std::string& where
   for (std::size_t i = 0; i < moving.size(); ++i)
     state.set_motion(system.slot(static_cast<int>(i)), moving[i]);
   state.t = simulation_->time();
-  Method method = choose_method(system, m.analysis);
+  Method method = choose_method(system, m);
   StartOptions options;
   options.smooth_multipliers =
       m.analysis.smooth_multipliers && m.analysis.step && method.control.order == 2;

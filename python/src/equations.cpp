@@ -28,7 +28,7 @@ nb::tuple step_equations(Engine& engine, double dt, const std::optional<std::vec
         "Leave these out of the model");
   const System& system = simulation.system();
   const State& state = simulation.state();
-  const Method method = choose_method(system, model.analysis);
+  const Method method = choose_method(system, model);
   Trial trial;
   trial.context.ga = method.ga;
   trial.context.conserving = method.control.conserving;

@@ -82,8 +82,9 @@ solids:
                              "block.yaml");
 }
 
-Method method_of(const Model& model, const AnalysisSpec& analysis = {}) {
-  return choose_method(build_system(model), analysis);
+Method method_of(Model model, const AnalysisSpec& analysis = {}) {
+  model.analysis = analysis;
+  return choose_method(build_system(model), model);
 }
 AnalysisSpec with(const std::function<void(AnalysisSpec&)>& change) {
   AnalysisSpec analysis;
@@ -94,9 +95,10 @@ AnalysisSpec with(const std::function<void(AnalysisSpec&)>& change) {
 struct Chosen {
   std::string engine, narration;
 };
-Chosen chosen(const Model& model, const AnalysisSpec& analysis = {}) {
+Chosen chosen(Model model, const AnalysisSpec& analysis = {}) {
+  model.analysis = analysis;
   const System system = build_system(model);
-  const Method m = choose_method(system, analysis);
+  const Method m = choose_method(system, model);
   return {m.engine->name(), m.narration};
 }
 
@@ -153,7 +155,7 @@ TEST(Method, ChoosesTheOrderFromTheTolerance) {
   const AnalysisSpec tolerance = with([](auto& a) { a.tolerance = 1e-8; });
   EXPECT_EQ(order(chain(2), {}), 2);
   EXPECT_EQ(order(chain(2), tolerance), 6);
-  EXPECT_EQ(order(damped_chain(), tolerance), 2);
+  EXPECT_EQ(order(damped_chain(), tolerance), 12) << "the highest of those by extrapolation";
   EXPECT_EQ(order(balls(2, "barrier"), tolerance), 2);
   AnalysisSpec fixed = tolerance;
   fixed.step = 1e-3;
@@ -164,6 +166,36 @@ TEST(Method, ChoosesTheOrderFromTheTolerance) {
   AnalysisSpec given = fixed;
   given.order = 8;
   EXPECT_EQ(order(chain(2), given), 8);
+}
+
+TEST(Method, ExtrapolatesWhatACompositionCannotReach) {
+  const auto method = [](const Model& model, int order, bool fixed) {
+    return method_of(model, with([&](auto& a) {
+                       a.order = order;
+                       if (fixed) a.step = 1e-2;
+                     }))
+        .control;
+  };
+  EXPECT_FALSE(method(chain(2), 6, true).extrapolated);
+  EXPECT_FALSE(method(chain(2), 4, true).extrapolated);
+  EXPECT_TRUE(method(chain(2), 4, false).extrapolated) << "a composition has no estimate";
+  EXPECT_TRUE(method(chain(2), 10, true).extrapolated) << "no composition";
+  EXPECT_TRUE(method(damped_chain(), 6, true).extrapolated) << "dampers";
+  EXPECT_FALSE(method(damped_chain(), 6, true).varies) << "the order is given";
+}
+
+TEST(Method, SaysWhatItChoseAndWhy) {
+  const AnalysisSpec tolerance = with([](auto& a) { a.tolerance = 1e-8; });
+  EXPECT_THAT(chosen(chain(2), tolerance).narration,
+              HasSubstr("Order 6 by composition with automatic steps, for the tolerance of 1e-08: "
+                        "nothing in the model dissipates"));
+  EXPECT_THAT(chosen(damped_chain(), tolerance).narration,
+              HasSubstr("Orders 4 to 12 by extrapolation with automatic steps, for the tolerance "
+                        "of 1e-08: the model dissipates"));
+  Model rubbing = damped_chain();
+  rubbing.joints.front().friction.emplace();
+  EXPECT_THAT(chosen(rubbing, tolerance).narration,
+              HasSubstr("Order 2 with automatic steps, for the tolerance of 1e-08: the joint "));
 }
 
 TEST(Method, HasToleranceAndIterationsForWhatIsInTheModel) {
@@ -218,10 +250,12 @@ TEST(Method, RefusesSettingsThatCannotBeCombined) {
       {chain(1), order(3), "only 2, 4, 6 and 8 exist"},
       {chain(1), both(order(6), [](auto& a) { a.rho_inf = 0.9; }),
        "stages backward in time would add the energy"},
-      {damped_chain(), order(6), "the model has dampers"},
+      {damped_chain(), both(order(6), [](auto& a) { a.method = "composition"; }),
+       "the model has dampers"},
       {chain(1), both(order(6), [](auto& a) { a.momentum_rate = "kinematic"; }),
        "only the step with momentum_rate: momentum"},
-      {chain(1), with([](auto& a) { a.order = 4; }), "automatic steps exist for orders 2, 6 and 8"},
+      {chain(1), with([](auto& a) { a.order = 4, a.method = "composition"; }),
+       "automatic steps exist for orders 2, 6 and 8"},
       {chain(1), both(tree, [](auto& a) { a.momentum_rate = "kinematic"; }),
        "'tree' needs momentum_rate: momentum"},
       {chain(1), both(tree, [](auto& a) { a.jacobian = "never"; }),

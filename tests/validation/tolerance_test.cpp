@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Automatic steps: analysis.tolerance alone chooses order and steps, and the error follows it.
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -56,22 +55,22 @@ void expect_followed(const Deviation& d, double tolerance) {
   testing::Test::RecordProperty("error", testing::PrintToString(d.at_end));
   testing::Test::RecordProperty("steps", std::to_string(d.summary.steps));
   EXPECT_LE(d.at_end, 200.0 * tolerance);
-  EXPECT_LE(d.summary.energy_drift, 1e-10);
+  // By composition to round-off, by extrapolation to the accuracy of the run.
+  const bool extrapolated = d.summary.scheme.ends_with("extrapolation");
+  EXPECT_LE(d.summary.energy_drift, extrapolated ? tolerance : 1e-10);
 }
 
 TEST_P(Tolerance, BoundsTheErrorUpToAFactor) {
   const auto& [c, tolerance] = GetParam();
-  // Order 2 needs millions of steps for these.
-  if (c.name == "A05" && tolerance < 5e-8 && std::getenv("POLHODE_SLOW_TESTS") == nullptr)
-    GTEST_SKIP() << "takes minutes; set POLHODE_SLOW_TESTS to run it";
   const Deviation d = end_of(c, tolerance, {});
-  EXPECT_EQ(d.summary.order, c.name == "A05" ? 2 : 6);
+  const bool conserves = c.name != "A03" && c.name != "A05";
+  EXPECT_EQ(d.summary.scheme,
+            conserves ? "order 6 by composition" : "orders 4 to 12 by extrapolation");
   expect_followed(d, tolerance);
 }
 
 TEST_P(Tolerance, BoundsTheErrorAtOrderEight) {
   const auto& [c, tolerance] = GetParam();
-  if (c.name == "A05") GTEST_SKIP() << "has dampers";
   expect_followed(end_of(c, tolerance, 8), tolerance);
 }
 

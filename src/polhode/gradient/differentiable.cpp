@@ -6,7 +6,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/gradient/differentiable.hpp>
-#include <polhode/simulation/method.hpp>
+#include <polhode/simulation/order_choice.hpp>
 
 namespace polhode {
 
@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 16> kDifferentiable = {"force",
   throw InputError(where, what, hint);
 }
 
-void check_settings(const AnalysisSpec& a) {
+void check_settings(const AnalysisSpec& a, bool extrapolated) {
   if (a.type != "dynamics")
     refuse_gradient("analysis.type", format("is {}, but gradients are those of a motion", a.type),
                     "Use type: dynamics");
@@ -48,7 +48,7 @@ void check_settings(const AnalysisSpec& a) {
     refuse_gradient("analysis.rho_inf",
                     format("is {:g}, but gradients exist for rho_inf: 1 only", a.rho_inf),
                     "Use rho_inf: 1");
-  if (is_extrapolated(a))
+  if (extrapolated)
     refuse_gradient("analysis.method", "is extrapolation, which has no gradient yet",
                     "Use order: 2, or a composition of order 4, 6 or 8");
   if (a.momentum_rate != "momentum")
@@ -114,7 +114,7 @@ void check_load(const LoadSpec& load) {
 }  // namespace
 
 void require_differentiable(const Model& model, const System& system) {
-  check_settings(model.analysis);
+  check_settings(model.analysis, choose_order(system, model).extrapolated);
   if (model.contacts.present || system.contacts())
     refuse_gradient("contacts",
                     "make the gradient of a run on fixed steps a wrong number: where an impact "

@@ -14,7 +14,7 @@
 #include <polhode/gradient/parameter_shift.hpp>
 #include <polhode/gradient/run_tape.hpp>
 #include <polhode/gradient/step_derivative.hpp>
-#include <polhode/simulation/method.hpp>
+#include <polhode/simulation/order_choice.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
@@ -342,7 +342,7 @@ RunGradient differentiate(const Model& model, const GradientRequest& request) {
   require_differentiable(model, system);
   RunGradient result;
   result.step = *model.analysis.step;
-  result.order = method_order(system, model.analysis);
+  result.order = choose_order(system, model).order;
   double at = wall_clock();
   Simulation simulation(model);
   const RunTape tape = run_onto_tape(simulation);

@@ -24,7 +24,7 @@ RunTape run_onto_tape(Simulation& simulation) {
   const System& system = simulation.system();
   require_end(model.analysis);
   const double end = model.analysis.duration;
-  Method method = choose_method(system, model.analysis);
+  Method method = choose_method(system, model);
   const int order = method.control.order;
   const std::vector<double> stages = order > 2
                                          ? composition_stages(order, order > 4 && system.rows() > 0)

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+<<<<<<< HEAD
 #include <polhode/beams/slide_on_beam.hpp>
+=======
+#include <algorithm>
+
+>>>>>>> 3edce203 (A tolerance chooses extrapolation for models that dissipate or are driven: variable order, order 2 around stops and where it needs less work)
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/dynamics/extrapolation.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/engines/sparse_engine.hpp>
@@ -10,6 +14,7 @@
 #include <polhode/engines/unilateral_rows.hpp>
 #include <polhode/model/endless.hpp>
 #include <polhode/simulation/method.hpp>
+#include <polhode/simulation/order_choice.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
 #include <polhode/system/barrier_constraint.hpp>
@@ -22,8 +27,8 @@ namespace {
 /// excites many vibrations.
 constexpr double kToleranceBodies = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
 constexpr double kToleranceExtrapolated = 1e-9;
-/// Order by extrapolation unless it is given.
-constexpr int kOrderExtrapolated = 6;
+/// Likewise for extrapolated automatic steps: this part of their tolerance, within the bounds.
+constexpr double kPartOfTolerance = 1e-3, kLeastOfTolerance = 1e-12, kMostOfTolerance = 1e-7;
 /// Iteration limits: for bodies and joints, and for solids, which may reuse a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;
 /// With surfaces of solids in contact: their forces follow from tiny displacements.
@@ -54,59 +59,10 @@ JacobianPolicy jacobian_policy(const std::string& word) {
                    "Use one of: automatic, every_iteration, every_step, never");
 }
 
-/// Order of an extrapolation. Whether the model is smooth enough is checked by require_smooth().
-int extrapolation_order(const AnalysisSpec& a) {
-  const auto refuse = [](const std::string& why, const std::string& hint) {
-    throw InputError("analysis.method", format("is extrapolation, but {}", why), hint);
-  };
-  const int order = a.order.value_or(kOrderExtrapolated);
-  static_cast<void>(extrapolation_substeps(order));
-  if (a.rho_inf != 1.0)
-    refuse(format("rho_inf is {:g}: only the step with rho_inf: 1 is symmetric in time", a.rho_inf),
-           "Set rho_inf: 1, or order: 2");
-  if (a.momentum_rate != "momentum")
-    refuse("only the step with momentum_rate: momentum is symmetric in time",
-           "Set momentum_rate: momentum, or order: 2");
-  return order;
-}
-
-/// Order of accuracy, and reasons against higher ones.
-int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
-  if (is_extrapolated(a)) return extrapolation_order(a);
-  const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
-  if (system.contacts() && a.order.value_or(2) != 2)
-    throw InputError("analysis.order",
-                     format("is {}, but orders above 2 cannot be combined with contacts", *a.order),
-                     "Use order: 2 for this model");
-  if (!a.order) {
-    if (!a.tolerance || a.step || system.contacts()) return 2;
-    const int order = composable ? 6 : 2;
-    narration += format("Order {} with automatic steps, for the tolerance of {:g}: {}.\n", order,
-                        *a.tolerance,
-                        composable ? "nothing in the model dissipates"
-                                   : "higher orders need rho_inf = 1 and a model without dampers");
-    return order;
-  }
-  const int order = *a.order;
-  if (order == 2) return order;
-  const auto refuse = [&](const std::string& why, const std::string& hint) {
-    throw InputError("analysis.order", format("is {}, but {}", order, why), hint);
-  };
-  if (order != 4 && order != 6 && order != 8) refuse("only 2, 4, 6 and 8 exist", "Use one of them");
-  if (a.rho_inf != 1.0)
-    refuse(format("rho_inf is {:g}: stages backward in time would add the energy that the others "
-                  "dissipate",
-                  a.rho_inf),
-           "Set rho_inf: 1, or order: 2");
-  if (system.dissipates())
-    refuse("the model has dampers: stages backward in time would add energy",
-           "Set method: extrapolation, or order: 2");
-  if (a.momentum_rate != "momentum")
-    refuse("only the step with momentum_rate: momentum is symmetric in time",
-           "Set momentum_rate: momentum, or order: 2");
-  if (order == 4 && !a.step)
-    refuse("automatic steps exist for orders 2, 6 and 8", "Give a step, or use order: 6");
-  return order;
+/// Newton tolerance of extrapolated steps: that of automatic ones follows theirs.
+double extrapolated_tolerance(const AnalysisSpec& a) {
+  if (a.step || !a.tolerance) return kToleranceExtrapolated;
+  return std::clamp(kPartOfTolerance * *a.tolerance, kLeastOfTolerance, kMostOfTolerance);
 }
 
 /// Whether surfaces of solids may be in contact.
@@ -202,23 +158,19 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
 
 }  // namespace
 
-bool is_extrapolated(const AnalysisSpec& a) {
-  return a.type == "dynamics" && a.method == "extrapolation" && a.order != 2;
-}
-
-int method_order(const System& system, const AnalysisSpec& analysis) {
-  std::string reasons;
-  return choose_order(system, analysis, reasons);
-}
-
-Method choose_method(const System& system, const AnalysisSpec& a) {
+Method choose_method(const System& system, const Model& model) {
+  const AnalysisSpec& a = model.analysis;
   Method m;
   m.ga = GeneralizedAlpha::from_spectral_radius(a.rho_inf);
   m.kernels = &lane_kernels(a.isa);
   const JacobianPolicy policy = jacobian_policy(a.jacobian);
   StepControl& c = m.control;
-  c.order = choose_order(system, a, m.narration);
-  c.extrapolated = is_extrapolated(a);
+  const OrderChoice choice = choose_order(system, model);
+  m.narration = choice.reason;
+  m.scheme = choice.text();
+  c.order = choice.order;
+  c.extrapolated = choice.extrapolated;
+  c.varies = choice.varies;
   c.step = a.step;
   c.tolerance = a.tolerance.value_or(kDefaultError);
   c.horizon = is_endless(a) ? kEndlessHorizon : a.duration;
@@ -226,8 +178,12 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
+<<<<<<< HEAD
                        : c.extrapolated          ? kToleranceExtrapolated
                        : has_slides(system)      ? kToleranceSlides
+=======
+                       : c.extrapolated          ? extrapolated_tolerance(a)
+>>>>>>> 3edce203 (A tolerance chooses extrapolation for models that dissipate or are driven: variable order, order 2 around stops and where it needs less work)
                        : c.order > 4             ? kToleranceHighOrder
                        : !system.nodes().empty() ? kToleranceSolids
                                                  : kToleranceBodies;

@@ -17,18 +17,12 @@ struct Method {
   StepControl control;
   std::unique_ptr<NewtonEngine> engine;
   const LaneKernels* kernels = nullptr;
+  std::string scheme;     ///< Order and how it is reached, in words.
   std::string narration;  ///< Choices and reasons, a sentence each.
 };
 
-/// Whether orders above 2 are reached by extrapolation.
-[[nodiscard]] bool is_extrapolated(const AnalysisSpec& analysis);
-
-/// @throws InputError if settings cannot be combined: a higher order with ρ∞ < 1, or by composition
-/// with dampers; automatic steps of order 4; the tree with an unsupported momentum rate or Jacobian
-/// policy; an unknown solver.
-[[nodiscard]] Method choose_method(const System& system, const AnalysisSpec& analysis);
-
-/// Order of accuracy of that method. @throws InputError likewise
-[[nodiscard]] int method_order(const System& system, const AnalysisSpec& analysis);
+/// @throws InputError if settings cannot be combined, as choose_order(); the tree with an unsupported
+/// momentum rate or Jacobian policy; an unknown solver.
+[[nodiscard]] Method choose_method(const System& system, const Model& model);
 
 }  // namespace polhode

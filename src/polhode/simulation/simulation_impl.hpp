@@ -26,7 +26,6 @@
 #include <polhode/simulation/probe.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
 #include <polhode/simulation/simulation_details.hpp>
-#include <polhode/simulation/smooth_model.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
 #include <polhode/stepping/extrapolated_velocities.hpp>
@@ -107,8 +106,7 @@ struct Simulation::Impl {
         held(own_held_numbers(model)),
         system(build_system(model, &map)),
         contacts(map.contacts, map.contact) {
-    method = choose_method(system, model.analysis);
-    if (method.control.extrapolated) require_smooth(model, system, method.control.order);
+    method = choose_method(system, model);
     narration = method.narration;
     if (model.analysis.type == "statics") choose_statics();
     for (const SolidMap& solid : map.solids)

@@ -3,7 +3,6 @@
 #include <array>
 #include <string_view>
 
-#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/simulation/smooth_model.hpp>
 
@@ -22,24 +21,42 @@ constexpr std::array<std::string_view, 4> kNotCombined = {"point_on_curve", "cur
 /// error H^(derivative + 2) in positions, and a run crosses it a bounded number of times.
 bool smooth_enough(int derivative, int order) { return derivative + 2 >= order; }
 
-[[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& hint) {
-  throw InputError("analysis.method", format("is extrapolation, but {} {}", what, why), hint);
-}
-
 const std::string kOrderTwo = "Use order: 2 for this model";
 
-void check_law(const LoadSpec& load, const std::string& key, const TimeFunction& law, int order) {
-  int worst = order;
+/// Search for the first part that is not smooth.
+class Search {
+ public:
+  explicit Search(int order) : order_(order) {}
+  void joints(const Model& model, bool leaves_stops);
+  void interactions(const System& system, bool leaves_stops);
+  void controllers(const Model& model);
+  void load(const LoadSpec& load);
+  void cable(const CableLineSpec& cable);
+  void elements(const Nodes& nodes);
+  [[nodiscard]] const std::optional<NotSmooth>& found() const { return found_; }
+
+ private:
+  void refuse(const std::string& what, const std::string& why, const std::string& hint) {
+    if (!found_) found_ = {what, why, hint};
+  }
+  void law(const LoadSpec& load, const std::string& key, const TimeFunction& law);
+
+  int order_;
+  std::optional<NotSmooth> found_;
+};
+
+void Search::law(const LoadSpec& load, const std::string& key, const TimeFunction& law) {
+  int worst = order_;
   for (TimeBreak b = law.next_break(-kLawRange, kLawRange); b.exists() && worst > 0;
        b = law.next_break(b.t, kLawRange))
     worst = std::min(worst, b.derivative);
-  if (!smooth_enough(worst, order))
+  if (!smooth_enough(worst, order_))
     refuse(format("{} of '{}'", key, load.name),
            worst == 0 ? "jumps" : format("has kinks in its derivative {}", worst),
            "Use a smooth expression, or a lower order; order: 2 always runs");
 }
 
-void check_load(const LoadSpec& load, int order) {
+void Search::load(const LoadSpec& load) {
   if (std::find(kNotCombined.begin(), kNotCombined.end(), load.type) != kNotCombined.end())
     refuse(format("'{}' is a {}", load.name, load.type), "whose state it does not combine",
            kOrderTwo);
@@ -53,14 +70,14 @@ void check_load(const LoadSpec& load, int order) {
   if (given("max_moment") || given("max_force"))
     refuse(format("the servo '{}' has a limit", load.name), "at which its force has a kink",
            "Leave the limit out if it is not reached, or use order: 2");
-  if (given("quadratic") && !smooth_enough(2, order))
+  if (given("quadratic") && !smooth_enough(2, order_))
     refuse(format("'{}' is quadratic", load.name), "with a kink of the second derivative at zero",
            "Use order: 4 or 2");
-  for (const auto& [key, law] : load.laws)
-    if (law) check_law(load, key, *law, order);
+  for (const auto& [key, of_key] : load.laws)
+    if (of_key) law(load, key, *of_key);
 }
 
-void check_cable(const CableLineSpec& cable) {
+void Search::cable(const CableLineSpec& cable) {
   if (cable.friction > 0.0)
     refuse(format("the cable '{}' has friction", cable.name), "which is not smooth", kOrderTwo);
   if (cable.contact)
@@ -75,36 +92,59 @@ void check_cable(const CableLineSpec& cable) {
            "Write tension_only: false if it stays taut, or use order: 2");
 }
 
-}  // namespace
-
-void require_smooth(const Model& model, const System& system, int order) {
-  if (model.contacts.present || system.contacts())
-    refuse("the model has contacts", "which are not smooth", kOrderTwo);
+void Search::joints(const Model& model, bool leaves_stops) {
   for (const JointSpec& joint : model.joints) {
     if (joint.friction)
       refuse(format("the joint '{}' has dry friction", joint.name), "which is not smooth",
              kOrderTwo);
-    if (joint.limits || joint.angle_limits || joint.type == "slack_link")
+    if ((joint.limits || joint.angle_limits || joint.type == "slack_link") && !leaves_stops)
       refuse(format("the joint '{}' has stops", joint.name), "at which the velocity jumps",
-             "Leave its limits out if they are not reached, or use order: 2");
+             "Give a tolerance instead of a step, or use order: 2");
     if (joint.enforcement)
       refuse(format("the joint '{}' is held by springs", joint.name),
              "whose state it does not combine", "Leave its enforcement out, or use order: 2");
   }
-  for (const LoadSpec& load : model.loads) check_load(load, order);
-  for (const CableLineSpec& cable : model.cables) check_cable(cable);
+}
+
+void Search::interactions(const System& system, bool leaves_stops) {
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
-    if (traits.set_valued || traits.has_barrier || traits.compliant || traits.unilateral > 0)
+    if (traits.set_valued || (traits.has_barrier && !leaves_stops) || traits.compliant ||
+        traits.unilateral > 0)
       refuse(format("the {} '{}'", system.group(ref.group).kind(), system.name(ref)),
              "is not smooth", kOrderTwo);
   }
-  const Nodes& nodes = system.nodes();
+}
+
+void Search::controllers(const Model& model) {
+  for (const ControllerSpec& controller : model.controllers)
+    if (!controller.sample)
+      refuse(format("the controller '{}' is continuous", controller.name),
+             "and acts at the ends of steps", "Give it a sample time, or use order: 2");
+}
+
+void Search::elements(const Nodes& nodes) {
   for (int g = 0; g < nodes.group_count(); ++g) {
     const ElementGroup& group = nodes.group(g);
     if (group.barrier_constraint() || group.changing_sparsity() || group.surface_impacts())
       refuse(format("the {} of '{}'", group.kind(), group.name()), "is not smooth", kOrderTwo);
   }
+}
+
+}  // namespace
+
+std::optional<NotSmooth> not_smooth(const Model& model, const System& system, int order,
+                                    bool leaves_stops) {
+  if (model.contacts.present || system.contacts())
+    return NotSmooth{"the model has contacts", "which are not smooth", kOrderTwo};
+  Search search(order);
+  search.controllers(model);
+  search.joints(model, leaves_stops);
+  for (const LoadSpec& load : model.loads) search.load(load);
+  for (const CableLineSpec& cable : model.cables) search.cable(cable);
+  search.interactions(system, leaves_stops);
+  search.elements(system.nodes());
+  return search.found();
 }
 
 }  // namespace polhode

@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include <polhode/model/model.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
 
-/// Checks that the motion has as many derivatives as an extrapolated step of this order needs, but
-/// for times that steps end at, and that its state is combined rightly.
-/// @throws InputError naming the first part of the model that has not.
-void require_smooth(const Model& model, const System& system, int order);
+/// A part of a model that an extrapolated step does not combine, in words for a sentence.
+struct NotSmooth {
+  std::string what;  ///< The part by its name, and what it has: "the joint 'a' has dry friction".
+  std::string why;   ///< "which is not smooth".
+  std::string hint;  ///< What to do.
+};
+
+/// The first part of a model whose motion has fewer derivatives than an extrapolated step of this
+/// order needs, but for times that steps end at, or whose state is not combined rightly.
+/// @param leaves_stops  Steps in which a stop is met may be left to order 2.
+[[nodiscard]] std::optional<NotSmooth> not_smooth(const Model& model, const System& system,
+                                                  int order, bool leaves_stops);
 
 }  // namespace polhode

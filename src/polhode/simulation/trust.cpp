@@ -30,14 +30,15 @@ double allowed_drift(const Model& model) {
 }
 
 std::vector<std::string> reasons_for_distrust(const Model& model, const System& system,
-                                              const Ledger& ledger) {
+                                              const Ledger& ledger, bool extrapolated) {
   std::vector<std::string> reasons;
-  const double allowed = allowed_drift(model);
+  double allowed = allowed_drift(model);
+  if (extrapolated) allowed = std::clamp(ledger.errors.sum, allowed, kPlainBalance);
   const Drifts drift = drifts(ledger);
   const auto balance = [&](const char* what, double value) {
     if (value <= allowed) return;
     reasons.push_back(
-        format("the balance of {} does not close: its drift is {:.2g}, and the method allows {:g}. "
+        format("the balance of {} does not close: its drift is {:.2g}, and the method allows {:.2g}. "
                "Take shorter steps{}",
                what, value, allowed,
                model.analysis.rho_inf < 1.0 ? ", or rho_inf: 1, which does not dissipate" : ""));

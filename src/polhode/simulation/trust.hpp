@@ -16,8 +16,10 @@ namespace polhode {
 
 /// Reasons not to trust a run so far, a sentence each: a balance of energy or momentum that does
 /// not close, or constraints that do not hold, to what the method can reach. @eq{trust}
+/// @param extrapolated  Balances of extrapolated steps close to their estimated errors.
 [[nodiscard]] std::vector<std::string> reasons_for_distrust(const Model& model,
                                                             const System& system,
-                                                            const Ledger& ledger);
+                                                            const Ledger& ledger,
+                                                            bool extrapolated = false);
 
 }  // namespace polhode

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include <polhode/dynamics/extrapolation.hpp>
 #include <polhode/equations/node_motion.hpp>
@@ -22,13 +21,17 @@ constexpr double kProjectedRates = 1e-10;
 /// Cayley vector of the rotation of a unit quaternion: χ = 2 tan(φ/2) n.
 Vec3 cayley_vector(const Quat& q) { return 2.0 / q.w() * q.vec(); }
 
+/// Weights of members first to end−1 of a table.
+std::vector<double> weights_of(const std::vector<int>& counts, std::size_t first, std::size_t end) {
+  return member_weights({counts.begin() + static_cast<std::ptrdiff_t>(first),
+                         counts.begin() + static_cast<std::ptrdiff_t>(end)});
+}
+
 }  // namespace
 
 ExtrapolationTable::ExtrapolationTable(const System& system, int order)
     : system_(&system),
       counts_(extrapolation_substeps(order)),
-      weights_(member_weights(counts_)),
-      weights_before_(member_weights(std::vector<int>(counts_.begin() + 1, counts_.end()))),
       combined_history_(system.initial_state().history.size(), 0),
       members_(counts_.size()),
       solver_(std::make_unique<InstantSolver>(system)) {
@@ -43,78 +46,109 @@ ExtrapolationTable::ExtrapolationTable(const System& system, int order)
 
 ExtrapolationTable::~ExtrapolationTable() = default;
 
-int ExtrapolationTable::substeps() const {
-  return std::accumulate(counts_.begin(), counts_.end(), 0);
-}
-
 NewtonReport ExtrapolationTable::advance(State& state, const std::vector<double>& parts, double H,
                                          SingleStep& single, const NewtonOptions& newton,
-                                         bool fresh) {
+                                         const Way& way) {
   NewtonReport report;
   int iterations = 0;
   for (const double part : parts) {
-    report = advance(state, part * H, single, newton, fresh);
+    report = advance(state, part * H, single, newton, way);
     report.iterations = iterations += report.iterations;
     if (!report.converged) break;
   }
   return report;
 }
 
-NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& single,
-                                         const NewtonOptions& newton, bool fresh) {
+NewtonReport ExtrapolationTable::take_member(State& member, int steps, double H, SingleStep& single,
+                                             const NewtonOptions& newton, bool fresh) {
   NewtonReport report;
   int iterations = 0;
   bool hard = false;
-  for (std::size_t j = 0; j < counts_.size(); ++j) {
-    State& member = members_[j];
-    member = state;
-    single.ledger().forget();
-    for (int k = 0; k < counts_[j]; ++k) {
-      const int degree = fresh && k == 0 ? -1 : step_control::kMemberDegree;
-      report = single.take(member, H / counts_[j], newton, {degree});
-      iterations += report.iterations;
-      hard = hard || report.hard;
-      report.iterations = iterations;
-      if (!report.converged) {
-        state.ledger.iterations += iterations;
-        return report;
-      }
+  single.ledger().forget();
+  for (int k = 0; k < steps; ++k) {
+    SingleStep::Predictor predictor;
+    predictor.degree = fresh && k == 0 ? -1 : step_control::kMemberDegree;
+    predictor.watch_stops = true;
+    report = single.take(member, H / steps, newton, predictor);
+    iterations += report.iterations;
+    hard = hard || report.hard;
+    met_stop_ = report.converged && (single.stopped() || single.jumped());
+    if (!report.converged || met_stop_) break;
+  }
+  report.iterations = iterations;
+  report.hard = hard;
+  return report;
+}
+
+NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& single,
+                                         const NewtonOptions& newton, const Way& way) {
+  NewtonReport report;
+  int iterations = 0;
+  bool hard = false;
+  const auto columns = static_cast<std::size_t>(way.columns);
+  difference_before_ = 0.0;
+  for (std::size_t j = 0; j < columns; ++j) {
+    members_[j] = state;
+    report = take_member(members_[j], counts_[j], H, single, newton, way.fresh);
+    report.iterations = iterations += report.iterations;
+    report.hard = hard = hard || report.hard;
+    bool hopeless = false;
+    if (report.converged && j > 0 && j + 2 == columns) {
+      difference_before_ = compare_columns(j + 1, H);
+      // What the last member and one more divide the leading error by. The estimate of the first
+      // column but one has a lower order and shows nothing.
+      const double gain = counts_[columns - 1] * (counts_[columns - 1] + 2.0) / 4.0;
+      hopeless = j > 1 && way.allowed > 0.0 && difference_before_ > gain * gain * way.allowed;
+      difference_ = difference_before_ / gain;
+    }
+    if (!report.converged || met_stop_ || hopeless) {
+      state.ledger.iterations += iterations;
+      return report;
     }
   }
   single.ledger().forget();
-  report.hard = hard;
-  // Members are combined relative to the last one, of which these are copies.
-  other_ = result_ = members_.back();
-  combine(weights_before_, 1, other_);
-  combine(weights_, 0, result_);
-  combine_ledger(state, result_);
+  difference_ = compare_columns(columns, H);
+  if (columns == 2) difference_before_ = state_difference(*system_, result_, members_[0], H);
+  combine_ledger(state, columns, result_);
   result_.t = state.t + H;
-  difference_ = state_difference(*system_, result_, other_, H);
   std::swap(state, result_);
-  if (system_->rows() > 0) {
-    // Off the constraints by the error of the step.
-    if (!solver_->assemble_positions(state).assembled) {
-      report.converged = false;
-      report.reason = "the extrapolated positions cannot be assembled";
-      return report;
-    }
-    const VelocityReport velocities = solver_->project_velocities(state);
-    if (!(velocities.residual <= kProjectedRates * velocities.scale)) {
-      report.converged = false;
-      report.reason = "the extrapolated velocities cannot be projected onto the joints";
-      return report;
-    }
-  }
-  bond_nodes(*system_, state);
+  if (system_->rows() > 0) report = project(state, report);
+  if (report.converged) bond_nodes(*system_, state);
   return report;
+}
+
+NewtonReport ExtrapolationTable::project(State& state, NewtonReport report) {
+  report.converged = false;
+  if (!solver_->assemble_positions(state).assembled) {
+    report.reason = "the extrapolated positions cannot be assembled";
+    return report;
+  }
+  const VelocityReport velocities = solver_->project_velocities(state);
+  report.converged = velocities.residual <= kProjectedRates * velocities.scale;
+  if (!report.converged)
+    report.reason = "the extrapolated velocities cannot be projected onto the joints";
+  return report;
+}
+
+double ExtrapolationTable::compare_columns(std::size_t last, double H) {
+  // Members are combined relative to the last one, of which these are copies.
+  other_ = result_ = members_[last - 1];
+  combine(1, last, other_);
+  combine(0, last, result_);
+  return state_difference(*system_, result_, other_, H);
+}
+
+int ExtrapolationTable::worst_body(double H) const {
+  // After an accepted step the result is the state that was given, at its start.
+  return other_.blocks.empty() ? -1 : most_different_body(*system_, members_[0], other_, H);
 }
 
 /// The chart is centred at the last member: any smooth chart keeps the expansion in even powers,
 /// and in this one rotations of the step may be large, equal values stay equal to the last bit, and
 /// little is lost to rounding.
-void ExtrapolationTable::combine(const std::vector<double>& weights, std::size_t first,
-                                 State& out) const {
-  const State& last = members_.back();
+void ExtrapolationTable::combine(std::size_t first, std::size_t end, State& out) const {
+  const State& last = members_[end - 1];
+  const std::vector<double> weights = weights_of(counts_, first, end);
   const std::size_t others = weights.size() - 1;  // the last one's difference is zero
   for (int b = 0; b < system_->body_count(); ++b) {
     const BodyMotion centre = system_->motion(last, b);
@@ -150,11 +184,13 @@ void ExtrapolationTable::combine(const std::vector<double>& weights, std::size_t
   field(&State::history, combined_history_.data());
 }
 
-void ExtrapolationTable::combine_ledger(const State& before, State& out) const {
+void ExtrapolationTable::combine_ledger(const State& before, std::size_t members,
+                                        State& out) const {
+  const std::vector<double> weights = weights_of(counts_, 0, members);
   const auto combine = [&](auto sum) {
     double change = 0.0;
-    for (std::size_t j = 0; j < members_.size(); ++j)
-      change += weights_[j] * (sum(members_[j].ledger).value() - sum(before.ledger).value());
+    for (std::size_t j = 0; j < members; ++j)
+      change += weights[j] * (sum(members_[j].ledger).value() - sum(before.ledger).value());
     return change;
   };
   std::array<double, 3> impulse{}, angular{};
@@ -162,7 +198,8 @@ void ExtrapolationTable::combine_ledger(const State& before, State& out) const {
   const double put_in = combine([](const Ledger& l) { return l.put_in; });
   std::int64_t iterations = before.ledger.iterations;
   double constraint_max = 0.0;
-  for (const State& member : members_) {
+  for (std::size_t j = 0; j < members; ++j) {
+    const State& member = members_[j];
     iterations += member.ledger.iterations - before.ledger.iterations;
     constraint_max = std::max(constraint_max, member.ledger.constraint_max);
   }

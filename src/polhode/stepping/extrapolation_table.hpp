@@ -15,35 +15,57 @@ class InstantSolver;
 /// by steps forward in time alone, also where the model dissipates. @eq{extrapolated-step}
 class ExtrapolationTable {
  public:
-  /// @param order  4, 6, 8, 10 or 12.
+  /// @param order  The highest one: 4, 6, 8, 10 or 12.
   ExtrapolationTable(const System& system, int order);
   ~ExtrapolationTable();
 
-  /// Takes extrapolated steps of the lengths parts·H; on failure the state is not restored.
-  /// @param fresh  Predict the first single steps from the velocities at t_n.
+  /// How a step is taken.
+  struct Way {
+    int columns = 2;  ///< Number of members: half of the order.
+    /// Error above which the step is given up, also before its last member [-]; 0: never.
+    double allowed = 0.0;
+    bool fresh = false;  ///< Predict the first single steps from the velocities at t_n.
+  };
+  /// Takes extrapolated steps of the lengths parts·H; on failure, and where a step is given up, the
+  /// state is not restored.
   NewtonReport advance(State& state, const std::vector<double>& parts, double H, SingleStep& single,
-                       const NewtonOptions& newton, bool fresh);
+                       const NewtonOptions& newton, const Way& way);
   /// Difference of the last two columns in the last step, positions and velocities over H: the
-  /// error of the column that is less accurate by two orders [-].
+  /// error of the column that is less accurate by two orders [-]. Expected, if it was given up.
   [[nodiscard]] double difference() const { return difference_; }
-  [[nodiscard]] int substeps() const;  ///< Single steps in a step.
+  /// The same with one member fewer; of two members, the difference of the first from the result.
+  [[nodiscard]] double difference_before() const { return difference_before_; }
+  /// The body with the largest difference; −1: not known.
+  [[nodiscard]] int worst_body(double H) const;
+  /// Whether a joint stop was met; then the step was given up.
+  [[nodiscard]] bool met_stop() const { return met_stop_; }
+  [[nodiscard]] int most_columns() const { return static_cast<int>(counts_.size()); }
+  /// Single steps in a step of so many members.
+  [[nodiscard]] static int substeps(int columns) { return columns * (columns + 1); }
 
  private:
   NewtonReport advance(State& state, double H, SingleStep& single, const NewtonOptions& newton,
-                       bool fresh);
-  /// Combines the members' motions and internal variables. @param first  First member used.
-  void combine(const std::vector<double>& weights, std::size_t first, State& out) const;
+                       const Way& way);
+  /// Takes the steps of a member, which starts at the state.
+  NewtonReport take_member(State& member, int steps, double H, SingleStep& single,
+                           const NewtonOptions& newton, bool fresh);
+  /// Combines motions and internal variables of members first to last−1, about member last−1.
+  void combine(std::size_t first, std::size_t last, State& out) const;
+  /// Difference between the columns of members 0 to last−1 and 1 to last−1. Both results are kept.
+  double compare_columns(std::size_t last, double H);
   /// Sums of the ledger over the step, by the same weights.
-  void combine_ledger(const State& before, State& out) const;
+  void combine_ledger(const State& before, std::size_t members, State& out) const;
+  /// Puts bodies back onto the constraints, from which the result is off by the step's error.
+  NewtonReport project(State& state, NewtonReport report);
 
   const System* system_;
   std::vector<int> counts_;
-  std::vector<double> weights_, weights_before_;  ///< Of the last column and the one before.
-  std::vector<char> combined_history_;            ///< By entry of State::history.
+  std::vector<char> combined_history_;  ///< By entry of State::history.
   std::vector<State> members_;
   State result_, other_;  ///< The last column and the one before.
   std::unique_ptr<InstantSolver> solver_;
-  double difference_ = 0.0;
+  double difference_ = 0.0, difference_before_ = 0.0;
+  bool met_stop_ = false;
 };
 
 }  // namespace polhode

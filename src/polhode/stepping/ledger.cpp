@@ -327,4 +327,14 @@ Balance EnergyLedger::balance(const State& state) const {
           .angular_momentum = vec(s.l)};
 }
 
+double EnergyLedger::imbalance(const State& from, const State& to) const {
+  const auto missed = [&](const State& state) {
+    const Balance b = balance(state);
+    return b.kinetic + b.potential + b.dissipated - b.put_in;
+  };
+  const Ledger& l = from.ledger;
+  const double scale = std::max({l.energy_scale, l.energy_noise / kReadsAs, sums(to).kinetic});
+  return scale > 0.0 ? std::abs(missed(to) - missed(from)) / scale : 0.0;
+}
+
 }  // namespace polhode

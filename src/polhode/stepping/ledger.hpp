@@ -53,6 +53,9 @@ class EnergyLedger {
   /// Updates the drifts since the start; at the end of whole steps.
   void close_step(State& state);
   [[nodiscard]] Balance balance(const State& state) const;
+  /// Energy that the balance from one state to the next misses, as a part of the largest energy
+  /// [-].
+  [[nodiscard]] double imbalance(const State& from, const State& to) const;
 
  private:
   [[nodiscard]] double stored(const State& state) const;

@@ -142,10 +142,9 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
     restore_stored_rates(state);
     return report;
   }
-  if (predictor.remember) {
-    estimate_error();
-    stopped_ = meets_barrier(state);
-  }
+  const bool watches = predictor.remember || predictor.watch_stops;
+  if (predictor.remember) estimate_error();
+  if (watches) stopped_ = meets_barrier(state);
 
   ledger_.before_commit(state, trial_);
   ledger_.add(state, engine_->commit(state, trial_));
@@ -172,7 +171,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
     ledger_.add(state, impacts_.find(state, *contacts));
     state.past_count = 0;  // measured: steps then start best from the velocities at t_n
   }
-  if (predictor.remember) stopped_ = stopped_ || impacts_.touched();
+  if (watches) stopped_ = stopped_ || impacts_.touched();
   impacts_.leave_still(state);
   jumped_ = impacts_.any();
   if (jumped_) {

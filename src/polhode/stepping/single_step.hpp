@@ -23,8 +23,9 @@ class SingleStep {
 
   /// Prediction of the next trial from the mean velocities of past steps.
   struct Predictor {
-    int degree = 3;         ///< Of the extrapolation in time; −1: the velocities at t_n.
-    bool remember = false;  ///< Store the prediction for predictor_difference().
+    int degree = 3;            ///< Of the extrapolation in time; −1: the velocities at t_n.
+    bool remember = false;     ///< Store the prediction for error_estimate().
+    bool watch_stops = false;  ///< Find out whether a stop is active.
   };
   /// Takes one step of length dt. On failure the state is unchanged.
   NewtonReport take(State& state, double dt, const NewtonOptions& options, Predictor predictor);

@@ -15,6 +15,8 @@ inline constexpr double kFarAway = 4096.0;
 /// Relative lengthening of a step that then ends at a requested time [-].
 inline constexpr double kStretch = 1e-3;
 inline constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kMinFactor = 0.3, kMaxFactor = 1.6;
+/// Of steps by extrapolation, whose estimate is one of this very step.
+inline constexpr double kMinFactorTable = 0.1, kMaxFactorTable = 4.0;
 /// Ratios of the companions' errors to the error at order 6 and at order 8, measured.
 inline constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
 /// Degree of the extrapolation in time by which members of an extrapolated step are predicted.
@@ -40,6 +42,18 @@ inline constexpr double kSamplesComposed = 3.0;
 /// one is measured.
 inline constexpr int kStepProbes = 40, kSampled = 64;
 inline constexpr double kWorthLonger = 3.0, kLonger = 10.0;
+/// Drift of the balance of energy over a run that extrapolated steps may leave, in tolerances; and
+/// the part of the energy that is rounding in one step [-].
+inline constexpr double kBalanceTolerances = 10.0, kBalanceRounding = 1e-13;
+/// Trials of an extrapolated step after which order 2 is tried; the length of a step of order 2, in
+/// those of equal work, above which it is taken.
+inline constexpr int kTrialsOfTable = 3;
+inline constexpr double kWorthTwo = 1.5;
+/// Steps between comparisons of extrapolation with order 2: the first and the most; each one that
+/// changes nothing multiplies them by the factor.
+inline constexpr int kFirstComparison = 4, kLastComparison = 256, kLaterBy = 2;
+/// Steps of order 2 beyond a stop after which extrapolation is tried again.
+inline constexpr int kBeyondStop = 3;
 /// Consecutive steps with few iterations after which a halved step grows again.
 inline constexpr int kEasySteps = 3, kFewIterations = 4;
 /// State::easy_steps of automatic steps: the length has to be found again.

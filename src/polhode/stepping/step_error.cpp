@@ -18,17 +18,31 @@ double distance(const std::vector<double>& x, const std::vector<double>& y) {
   return most;
 }
 
+double body_difference(const System& system, const State& x, const State& y, double H, int body) {
+  const double per_length = 1.0 / system.length_scale();
+  const BodyMotion m = system.motion(x, body), n = system.motion(y, body);
+  return std::max({per_length * (m.r - n.r).norm(), 2.0 * (m.q.conjugate() * n.q).vec().norm(),
+                   per_length * H * (m.v - n.v).norm(), H * (m.W - n.W).norm()});
+}
+
 }  // namespace
+
+int most_different_body(const System& system, const State& x, const State& y, double H) {
+  int worst = -1;
+  double most = 0.0;
+  for (int b = 0; b < system.body_count(); ++b) {
+    const double of_body = body_difference(system, x, y, H, b);
+    if (of_body > most) worst = b;
+    most = std::max(most, of_body);
+  }
+  return most >= state_difference(system, x, y, H) ? worst : -1;
+}
 
 double state_difference(const System& system, const State& x, const State& y, double H) {
   double most = 0.0;
   const double per_length = 1.0 / system.length_scale();
-  for (int b = 0; b < system.body_count(); ++b) {
-    const BodyMotion m = system.motion(x, b), n = system.motion(y, b);
-    most =
-        std::max({most, per_length * (m.r - n.r).norm(), 2.0 * (m.q.conjugate() * n.q).vec().norm(),
-                  per_length * H * (m.v - n.v).norm(), H * (m.W - n.W).norm()});
-  }
+  for (int b = 0; b < system.body_count(); ++b)
+    most = std::max(most, body_difference(system, x, y, H, b));
   most = std::max({most, per_length * distance(x.node_x, y.node_x),
                    per_length * H * distance(x.node_v, y.node_v)});
   const Nodes& nodes = system.nodes();

@@ -13,6 +13,11 @@ namespace polhode {
 [[nodiscard]] double state_difference(const System& system, const State& x, const State& y,
                                       double H);
 
+/// The body of which two states of a system differ most, as in state_difference(); −1: of a node,
+/// or of none.
+[[nodiscard]] int most_different_body(const System& system, const State& x, const State& y,
+                                      double H);
+
 /// Largest displacement by the velocity jump from one state to the other over a time H [-]: the
 /// error of an impact at any time within it.
 [[nodiscard]] double jump_difference(const System& system, const State& x, const State& y,

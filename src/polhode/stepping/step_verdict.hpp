@@ -12,6 +12,7 @@ struct StepVerdict {
   bool fine = true;
   double factor = 1.0;  ///< Of the length, for the next step or another trial.
   double error = 0.0;
+  int columns = 0;     ///< Members of the next extrapolated step; 0: as they are.
   bool noise = false;  ///< Accepted because shorter steps have no smaller error.
 };
 

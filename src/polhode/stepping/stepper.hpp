@@ -19,6 +19,7 @@ namespace polhode {
 struct StepControl {
   int order = 2;               ///< 2, 4, 6 or 8; extrapolated also 10 and 12.
   bool extrapolated = false;   ///< Orders above 2 by extrapolation, not by composition.
+  bool varies = false;         ///< Each extrapolated step has an order of its own up to `order`.
   std::optional<double> step;  ///< Fixed step H [s]; absent: automatic.
   double tolerance = 1e-6;     ///< Error of automatic steps [-], see docs/theory/step_control.md.
   double horizon = 1.0;        ///< Duration of the run, over which order 2 spreads its error [s].

@@ -100,6 +100,11 @@ struct State {
   double turned = 0.0;      ///< Largest possible rotation of a body since turns were counted [rad].
   /// Consecutive steps with few iterations; -1: the length has to be found again.
   int easy_steps = 0;
+  /// Members of the next extrapolated step; 1: steps of order 2 for now; 0: not yet chosen.
+  int columns = 0;
+  /// Steps until extrapolation and order 2 are compared, or until extrapolation is tried again; and
+  /// the number of steps after which they were last [-].
+  int steps_to_compare = 0, steps_compared = 0;
   Ledger ledger;
 
   [[nodiscard]] BodyMotion motion(int slot) const;

@@ -236,6 +236,9 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
   archive(state.error_last);
   archive(state.turned);
   archive.whole(state.easy_steps, -1, std::numeric_limits<int>::max());
+  archive.whole(state.columns, 0, 6);
+  archive.whole(state.steps_to_compare, 0, std::numeric_limits<int>::max());
+  archive.whole(state.steps_compared, 0, std::numeric_limits<int>::max());
   ledger(archive, system, state.ledger);
 }
 

@@ -131,8 +131,8 @@ TEST(Checkpoint, RefusesAnotherOrder) {
     (void)io::read_checkpoint(s.path, finer, s.system);
     FAIL() << "read";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("was written by a run of order 2, but this one has order "
-                                        "4. Give --set analysis.order=2."));
+    EXPECT_THAT(error.what(), HasSubstr("was written by a run with order 2, but this one has order "
+                                        "4 by composition. Give the analysis.order, method"));
   }
 }
 

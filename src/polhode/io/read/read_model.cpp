@@ -182,13 +182,13 @@ void check_model(ReadContext& context, const SourceNode& root) {
     context.fault(*root.find("contacts"), "contacts",
                   format("cannot be combined with an analysis of type {}", model.analysis.type),
                   "Contact of bodies needs type: dynamics: let the model come to rest there.");
-  if (model.analysis.method == "extrapolation") return;  // require_smooth() checks it
+  if (model.analysis.method == "extrapolation") return;  // choose_order() checks it
   if (order > 2 && model.contacts.present)
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
                   format("order {} cannot be combined with contacts", order),
                   "Orders above 2 contain stages backward in time, where friction and impacts "
                   "would add energy: use order 2.");
-  if (order <= 2) return;
+  if (order <= 2 || model.analysis.method != "composition") return;
   const auto refuse = [&](const std::string& what, const char* named) {
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
                   format("order {} cannot be combined with {}", order, what),

@@ -10,7 +10,7 @@
 #include <polhode/io/results/model_fingerprint.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/kernels/dispatch.hpp>
-#include <polhode/simulation/method.hpp>
+#include <polhode/simulation/order_choice.hpp>
 #include <polhode/system/state_archive.hpp>
 
 namespace polhode::io {
@@ -18,16 +18,16 @@ namespace polhode::io {
 namespace {
 
 // Layout: magic (16 bytes with the format version), fingerprint (64), order and instruction set
-// (16, padded with blanks), length of the state (8, little endian), state, SHA-256 of all that
+// (48, padded with blanks), length of the state (8, little endian), state, SHA-256 of all that
 // (64).
 constexpr std::string_view kMagicStem = "polhode state ";
-constexpr std::string_view kMagic = "polhode state 8\n";
-constexpr std::size_t kDigest = 64, kMethod = 16;
+constexpr std::string_view kMagic = "polhode state 9\n";
+constexpr std::size_t kDigest = 64, kMethod = 48;
 
-/// Order and instruction set of a run: "2 avx512".
-std::string method_text(const System& system, const AnalysisSpec& analysis) {
-  const int order = method_order(system, analysis);
-  return format("{:<16}", format("{} {}", order, lane_kernels(analysis.isa).name));
+/// Order and instruction set of a run: "order 6 by composition, avx512".
+std::string method_text(const System& system, const Model& model) {
+  const std::string name = lane_kernels(model.analysis.isa).name;
+  return format("{:<48}", format("{}, {}", choose_order(system, model).text(), name));
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void write_checkpoint(const std::string& path, const Model& model, const System&
   const std::uint64_t length = body.size();
   std::string bytes(kMagic);
   bytes += model_fingerprint(model);
-  bytes += method_text(system, model.analysis);
+  bytes += method_text(system, model);
   bytes.append(reinterpret_cast<const char*>(&length), sizeof length);
   bytes += body;
   bytes += sha256_hex(bytes);
@@ -69,17 +69,17 @@ State read_checkpoint(const std::string& path, const Model& model, const System&
                      "Give the model and the --set values of that run; only analysis.duration, the "
                      "step and the output may differ");
   const std::string_view before = bytes.substr(kMagic.size() + kDigest, kMethod);
-  const std::string now = method_text(system, model.analysis);
-  const auto order = [](std::string_view text) { return text.substr(0, text.find(' ')); };
+  const std::string now = method_text(system, model);
+  const auto order = [](std::string_view text) { return text.substr(0, text.find(',')); };
   const auto isa = [](std::string_view text) {
-    const std::size_t begin = text.find(' ') + 1;
+    const std::size_t begin = text.find(", ") + 2;
     return text.substr(begin, text.find(' ', begin) - begin);
   };
   if (order(before) != order(now))
-    throw InputError(path,
-                     format("was written by a run of order {}, but this one has order {}",
-                            order(before), order(now)),
-                     format("Give --set analysis.order={}", order(before)));
+    throw InputError(
+        path,
+        format("was written by a run with {}, but this one has {}", order(before), order(now)),
+        "Give the analysis.order, method and tolerance of that run");
   if (note != nullptr && isa(before) != isa(now))
     *note = format(
         "The run was begun with the instruction set {} and continues with {}: its last digits "

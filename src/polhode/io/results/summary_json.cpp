@@ -36,6 +36,7 @@ std::string summary_json(const RunSummary& s, const RunPlace& place) {
       {"phases", phases},
       {"result_hash", s.result_hash},
       {"order", s.order},
+      {"scheme", s.scheme},
       {"solver", s.solver},
       {"instruction_set", s.instruction_set},
       {"version", s.version},

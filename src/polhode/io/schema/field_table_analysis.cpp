@@ -54,16 +54,17 @@ const FieldTable& analysis_fields() {
            .kind = kChoice,
            .meaning = "Order of accuracy. Above 2 for smooth models at rho_inf = 1; by composition "
                       "4, 6 and 8 for models without dampers.",
-           .standard = "2, or chosen from the tolerance; 6 by extrapolation",
+           .standard = "2, or chosen by the tolerance; 6 by extrapolation with a step",
            .choices = {"2", "4", "6", "8", "10", "12"},
            .member = &AnalysisSpec::order,
            .may_change = true},
           {.name = "method",
            .kind = kChoice,
            .meaning = "How orders above 2 are reached: composition conserves energy exactly but "
-                      "steps backwards too; extrapolation also suits models that dissipate.",
-           .standard = "composition",
-           .choices = {"composition", "extrapolation"},
+                      "steps backwards too; extrapolation also suits models that dissipate; "
+                      "automatic takes composition where nothing dissipates.",
+           .standard = "automatic",
+           .choices = {"automatic", "composition", "extrapolation"},
            .member = &AnalysisSpec::method},
           {.name = "momentum_rate",
            .kind = kChoice,
