@@ -37,11 +37,11 @@ std::vector<std::string> reasons_for_distrust(const Model& model, const System& 
   const Drifts drift = drifts(ledger);
   const auto balance = [&](const char* what, double value) {
     if (value <= allowed) return;
-    reasons.push_back(
-        format("the balance of {} does not close: its drift is {:.2g}, and the method allows {:.2g}. "
-               "Take shorter steps{}",
-               what, value, allowed,
-               model.analysis.rho_inf < 1.0 ? ", or rho_inf: 1, which does not dissipate" : ""));
+    reasons.push_back(format(
+        "the balance of {} does not close: its drift is {:.2g}, and the method allows {:.2g}. "
+        "Take shorter steps{}",
+        what, value, allowed,
+        model.analysis.rho_inf < 1.0 ? ", or rho_inf: 1, which does not dissipate" : ""));
   };
   balance("energy", drift.energy);
   // Below rho_inf = 1 a step weights the forces of its neighbours: sums of impulses and momenta
