@@ -21,8 +21,8 @@ struct Method {
   std::string narration;  ///< Choices and reasons, a sentence each.
 };
 
-/// @throws InputError if settings cannot be combined, as choose_order(); the tree with an unsupported
-/// momentum rate or Jacobian policy; an unknown solver.
+/// @throws InputError if settings cannot be combined, as choose_order(); the tree with an
+/// unsupported momentum rate or Jacobian policy; an unknown solver.
 [[nodiscard]] Method choose_method(const System& system, const Model& model);
 
 }  // namespace polhode

@@ -202,7 +202,8 @@ RunSummary Simulation::summary() const {
   r.scheme = s.method.scheme;
   r.narration = s.narration;
   r.warnings = s.warnings();
-  if (!s.statics) r.distrust = reasons_for_distrust(s.model, s.system, l, s.method.control.extrapolated);
+  if (!s.statics)
+    r.distrust = reasons_for_distrust(s.model, s.system, l, s.method.control.extrapolated);
   if (!s.pole.empty()) r.distrust.push_back(s.pole);
   for (const std::string& reason : r.distrust) r.warnings.push_back("not trusted: " + reason);
   for (int e = 0; e < static_cast<int>(s.map.events.size()); ++e) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/simulation/smooth_model.hpp>
 
@@ -126,6 +127,9 @@ void Search::controllers(const Model& model) {
 void Search::elements(const Nodes& nodes) {
   for (int g = 0; g < nodes.group_count(); ++g) {
     const ElementGroup& group = nodes.group(g);
+    if (as_slide(group))
+      refuse(format("'{}' slides along a beam", group.name()), "whose state it does not combine",
+             kOrderTwo);
     if (group.barrier_constraint() || group.changing_sparsity() || group.surface_impacts())
       refuse(format("the {} of '{}'", group.kind(), group.name()), "is not smooth", kOrderTwo);
   }
