@@ -81,8 +81,8 @@ struct RunSummary {
   double wall_time_s = 0.0, cpu_time_s = 0.0;
   std::vector<std::pair<std::string, double>> phases;  ///< Name, seconds.
   std::string result_hash, solver, instruction_set, version;
-  int order = 2;                   ///< The highest one if it varies.
-  std::string scheme = "order 2";  ///< In words: "orders 4 to 12 by extrapolation".
+  int order = 2;                        ///< The highest one if it varies.
+  std::string scheme = "order 2";       ///< In words: "orders 4 to 12 by extrapolation".
   std::optional<StaticReport> statics;  ///< Of a static analysis; t is the load factor then.
   double strain_energy = 0.0;           ///< Of a static analysis: in springs, beams and solids [J].
   std::string narration;                ///< Choices and reasons, a few lines.

@@ -115,7 +115,8 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
                   "out 'tolerance'.");
   const bool extrapolated = analysis.method == "extrapolation";
   if (analysis.order == 4 && !analysis.step && analysis.method == "composition")
-    section.fault("order", "a composition of order 4 has no error estimate, so it cannot choose its steps",
+    section.fault("order",
+                  "a composition of order 4 has no error estimate, so it cannot choose its steps",
                   "Leave out method: composition, give a step, or use order 2, 6 or 8.");
   if (analysis.order.value_or(2) > 2 && analysis.rho_inf < 1.0 && !extrapolated)
     section.fault("order",
