@@ -175,12 +175,8 @@ Method choose_method(const System& system, const Model& model) {
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
-<<<<<<< HEAD
-                       : c.extrapolated          ? kToleranceExtrapolated
+                       : c.extrapolated          ? extrapolated_tolerance(a)
                        : has_slides(system)      ? kToleranceSlides
-=======
-                       : c.extrapolated ? extrapolated_tolerance(a)
->>>>>>> 3edce203 (A tolerance chooses extrapolation for models that dissipate or are driven: variable order, order 2 around stops and where it needs less work)
                        : c.order > 4             ? kToleranceHighOrder
                        : !system.nodes().empty() ? kToleranceSolids
                                                  : kToleranceBodies;
