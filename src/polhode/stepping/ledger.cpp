@@ -328,13 +328,14 @@ Balance EnergyLedger::balance(const State& state) const {
 }
 
 double EnergyLedger::imbalance(const State& from, const State& to) const {
-  const auto missed = [&](const State& state) {
-    const Balance b = balance(state);
+  const auto kept = [](const Balance& b) {
     return b.kinetic + b.potential + b.dissipated - b.put_in;
   };
-  const Ledger& l = from.ledger;
-  const double scale = std::max({l.energy_scale, l.energy_noise / kReadsAs, sums(to).kinetic});
-  return scale > 0.0 ? std::abs(missed(to) - missed(from)) / scale : 0.0;
+  const Balance before = balance(from), after = balance(to);
+  // At the start the largest energy so far may be that of a first tiny motion.
+  const double scale =
+      std::max(from.ledger.energy_scale, after.kinetic + std::abs(after.potential));
+  return scale > 0.0 ? std::abs(kept(after) - kept(before)) / scale : 0.0;
 }
 
 }  // namespace polhode

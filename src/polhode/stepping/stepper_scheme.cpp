@@ -54,7 +54,7 @@ bool Stepper::Impl::suits_order_two(State& state, double H, int columns) {
   by_two = true;
   const double dt = kWorthTwo * H / ExtrapolationTable::substeps(columns);
   const std::optional<double> error = error_of_two(state, dt);
-  const bool suits = error && *error <= requested_error(dt);  // rounding does not count
+  const bool suits = error && *error <= requested_error(dt) && least_error <= requested_error(dt);
   by_two = false;
   state.ledger.iterations += companion_iterations;
   if (!suits) return false;
