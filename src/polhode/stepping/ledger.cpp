@@ -14,6 +14,8 @@ namespace {
 /// Relative rounding of a sum of numbers.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 /// Largest drift reported for rounding alone, and for bodies that are at rest but for rounding.
+/// Part of the energy that is rounding in the balance of one step [-].
+constexpr double kImbalanceRounding = 1e-13;
 constexpr double kReadsAs = 1e-10, kRestReadsAs = 1e-7;
 
 /// Keeps the larger one; what is not a number stays: std::max() would forget it.
@@ -332,10 +334,11 @@ double EnergyLedger::imbalance(const State& from, const State& to) const {
     return b.kinetic + b.potential + b.dissipated - b.put_in;
   };
   const Balance before = balance(from), after = balance(to);
-  // At the start the largest energy so far may be that of a first tiny motion.
-  const double scale =
-      std::max(from.ledger.energy_scale, after.kinetic + std::abs(after.potential));
-  return scale > 0.0 ? std::abs(kept(after) - kept(before)) / scale : 0.0;
+  const double missed = std::abs(kept(after) - kept(before));
+  // A first tiny motion has less energy than others round.
+  if (missed <= kImbalanceRounding * (after.kinetic + std::abs(after.potential))) return 0.0;
+  const double scale = std::max(from.ledger.energy_scale, after.kinetic);
+  return scale > 0.0 ? missed / scale : 0.0;
 }
 
 }  // namespace polhode
