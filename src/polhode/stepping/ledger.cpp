@@ -14,9 +14,9 @@ namespace {
 /// Relative rounding of a sum of numbers.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 /// Largest drift reported for rounding alone, and for bodies that are at rest but for rounding.
+constexpr double kReadsAs = 1e-10, kRestReadsAs = 1e-7;
 /// Part of the energy that is rounding in the balance of one step [-].
 constexpr double kImbalanceRounding = 1e-13;
-constexpr double kReadsAs = 1e-10, kRestReadsAs = 1e-7;
 
 /// Keeps the larger one; what is not a number stays: std::max() would forget it.
 void keep_larger(double& largest, double value) {

@@ -54,7 +54,7 @@ class EnergyLedger {
   void close_step(State& state);
   [[nodiscard]] Balance balance(const State& state) const;
   /// Energy that the balance from one state to the next misses, as a part of the largest energy
-  /// [-].
+  /// [-]; 0 if it is rounding.
   [[nodiscard]] double imbalance(const State& from, const State& to) const;
 
  private:

@@ -42,9 +42,8 @@ inline constexpr double kSamplesComposed = 3.0;
 /// one is measured.
 inline constexpr int kStepProbes = 40, kSampled = 64;
 inline constexpr double kWorthLonger = 3.0, kLonger = 10.0;
-/// Drift of the balance of energy over a run that extrapolated steps may leave, in tolerances; and
-/// the part of the energy that is rounding in one step [-].
-inline constexpr double kBalanceTolerances = 10.0, kBalanceRounding = 1e-13;
+/// Drift of the balance of energy over a run that extrapolated steps may leave, in tolerances [-].
+inline constexpr double kBalanceTolerances = 10.0;
 /// Trials of an extrapolated step after which order 2 is tried; the length of a step of order 2, in
 /// those of equal work, above which it is taken.
 inline constexpr int kTrialsOfTable = 3;

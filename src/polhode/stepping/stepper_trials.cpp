@@ -62,7 +62,6 @@ double Stepper::Impl::extrapolated_error(const State& from, const State& reached
   const double difference = table->difference();
   if (difference > allowed) return difference;
   const double missed = single.ledger().imbalance(from, reached);
-  if (missed < kBalanceRounding) return difference;
   return std::max(difference, missed * control.horizon / (kBalanceTolerances * std::abs(H)));
 }
 
