@@ -30,7 +30,7 @@ def tables(text):
 def main():
     text = (ROOT / "docs/validation.md").read_text()
     figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True)
-    for axis, (names, values), title in zip(axes, tables(text), ("order 6 (A05: order 2)", "order 8")):
+    for axis, (names, values), title in zip(axes, tables(text), ("order 6 (A03, A05: 4 to 12)", "order 8")):
         tolerances = sorted(values)
         for i, name in enumerate(names):
             axis.loglog(tolerances, [values[t][i] for t in tolerances], "o-", ms=3, lw=1, label=name)
