@@ -73,6 +73,8 @@ TEST(LoadFunctions, WithoutVelocityCanBeUsedAtOrderFour) {
   Model damped = free_body("0.01");
   damped.analysis.order = 4;
   damped.loads[0].of_motion = spring(kStiffness, kDamping);
+  EXPECT_EQ(Simulation(damped).summary().scheme, "order 4 by extrapolation");
+  damped.analysis.method = "composition";
   EXPECT_THROW(Simulation{damped}, InputError);
 }
 

@@ -83,8 +83,9 @@ solids:
 }
 
 Method method_of(Model model, const AnalysisSpec& analysis = {}) {
+  const System system = build_system(model);
   model.analysis = analysis;
-  return choose_method(build_system(model), model);
+  return choose_method(system, model);
 }
 AnalysisSpec with(const std::function<void(AnalysisSpec&)>& change) {
   AnalysisSpec analysis;
@@ -96,8 +97,8 @@ struct Chosen {
   std::string engine, narration;
 };
 Chosen chosen(Model model, const AnalysisSpec& analysis = {}) {
-  model.analysis = analysis;
   const System system = build_system(model);
+  model.analysis = analysis;
   const Method m = choose_method(system, model);
   return {m.engine->name(), m.narration};
 }

@@ -174,7 +174,7 @@ TEST(Checkpoint, RefusesADamagedFile) {
   EXPECT_THAT(message(""), HasSubstr("is not a Polhode checkpoint"));
   EXPECT_THAT(message("format: 1\nbodies: {}\n"), HasSubstr("is not a Polhode checkpoint"));
   std::string future = good;
-  future[14] = '9';
+  ++future[14];
   EXPECT_THAT(message(future), HasSubstr("format that this version does not read"));
 }
 
