@@ -98,7 +98,7 @@ Outcome run(const Case& c, const AnalysisSpec& analysis, double least) {
   std::vector<double> times;
   State state;
   for (double spent = 0.0; times.size() < 5 && (times.empty() || spent < least);) {
-    Method method = choose_method(start.system(), model.analysis);
+    Method method = choose_method(start.system(), model);
     Stepper stepper(start.system(), std::move(method.engine), method.ga, method.control,
                     *method.kernels);
     state = start.state();
