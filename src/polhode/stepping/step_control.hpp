@@ -44,6 +44,8 @@ inline constexpr int kStepProbes = 40, kSampled = 64;
 inline constexpr double kWorthLonger = 3.0, kLonger = 10.0;
 /// Drift of the balance of energy over a run that extrapolated steps may leave, in tolerances [-].
 inline constexpr double kBalanceTolerances = 10.0;
+/// Part of the planned length below which a step that a limit ends is not judged by its balance.
+inline constexpr double kCutShort = 0.1;
 /// Trials of an extrapolated step after which order 2 is tried; the length of a step of order 2, in
 /// those of equal work, above which it is taken.
 inline constexpr int kTrialsOfTable = 3;

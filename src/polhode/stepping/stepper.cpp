@@ -61,6 +61,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
   }
   const double planned = state.dt_next;
   double wanted = next_length(state, t_limit, landing(ahead));
+  cut_short = wanted < kCutShort * planned;
   bool fresh = false;
   Refused refused;
   std::string gap;  // left by the first trial whose rows did not all hold
