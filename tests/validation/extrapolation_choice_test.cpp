@@ -11,6 +11,7 @@
 
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
+#include <support/paths.hpp>
 #include <support/published_cases.hpp>
 
 namespace polhode::test::extrapolation_choice_tests {
@@ -164,6 +165,15 @@ TEST(ExtrapolationChoice, MeetsItsToleranceOnTheStiffGovernor) {
     before = work(s);
   }
   EXPECT_LT(before, 40000);
+}
+
+// Events at times of frames: steps of some 1e-9 s are left between them, in which the work of
+// drives is rounding.
+TEST(ExtrapolationChoice, DoesNotJudgeStepsThatALimitCutsShortByTheirBalance) {
+  const Simulation s =
+      run(io::read_model(source_dir() + "/examples/geneva_drive/model.yaml"), 1e-6);
+  EXPECT_EQ(s.summary().scheme, "orders 4 to 12 by extrapolation");
+  EXPECT_THAT(s.summary().warnings, testing::IsEmpty());
 }
 
 TEST(ExtrapolationChoice, ContinuesARunFromItsStateWithTheSameBits) {
