@@ -15,7 +15,7 @@ MUSCLES = {"biceps": (0.022 + 0.3j, 0.045 + 0.012j, -1, 1000, 0.15, 0.185), "tri
 
 def curves():
     """The curves of De Groote et al. (2016), as an example has them in Python."""
-    spec = importlib.util.spec_from_file_location("curves", docs_numbers.ROOT / "examples/arm_with_muscles/check.py")
+    spec = importlib.util.spec_from_file_location("curves", docs_numbers.ROOT / "examples/muscle_curves.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -6,6 +6,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+from muscle_curves import VMAX, active, passive, speed_factor  # noqa: E402
 from support import Report, Run, integrate  # noqa: E402
 
 G = 9.81
@@ -17,23 +18,6 @@ MUSCLES = {
     "biceps": ((0.02 + 0.3j,), 0.045 + 0.01j, 900, 0.13, 0.155, math.radians(5), lambda t: 0.27 + 0.25 * math.sin(math.pi * t) ** 2),
     "triceps": ((-0.02 + 0.28j, -0.025 + 0.02j), -0.03 - 0.005j, 700, 0.12, 0.16, math.radians(12), lambda t: 0.05 + 0.1 * math.cos(math.pi * t) ** 2),
 }
-VMAX = 10.0                                                   # optimal lengths a second
-
-
-def active(length):
-    """De Groote et al. (2016), the force-length curve: a sum of three bell-shaped functions."""
-    bells = ((0.815, 1.055, 0.162, 0.063), (0.433, 0.717, -0.030, 0.200), (0.100, 1.000, 0.354, 0.0))
-    return sum(a * math.exp(-0.5 * ((length - b) / (c + d * length)) ** 2) for a, b, c, d in bells)
-
-
-def passive(length):
-    return math.expm1(4.0 * (length - 1) / 0.6) / math.expm1(4.0)
-
-
-def speed_factor(v):
-    """The same paper's force-velocity curve, scaled to be 1 at rest and 0 at full speed of shortening."""
-    shape = lambda u: math.asinh(-8.149 * u - 0.374)  # noqa: E731
-    return (shape(v) - shape(-1.0)) / (shape(0.0) - shape(-1.0))
 
 
 def muscle(name, angle, rate, t):

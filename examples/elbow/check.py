@@ -6,8 +6,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-sys.path.insert(0, str(HERE.parent / "arm_with_muscles"))
-from check import active, passive, speed_factor  # noqa: E402  the curves of De Groote et al. (2016)
+from muscle_curves import VMAX, active, passive, speed_factor  # noqa: E402
 from support import Report, Run, integrate  # noqa: E402
 
 G = 9.81
@@ -21,7 +20,6 @@ MUSCLES = {
     "biceps": (0.022 + 0.3j, 0.045 + 0.012j, -1, 1000, 0.15, 0.185, math.radians(5), lambda t: 0.12 + 0.45 * math.sin(math.pi * t / 2) ** 2),
     "triceps": (-0.022 + 0.28j, 0.01 - 0.022j, 1, 700, 0.12, 0.19, math.radians(12), lambda t: 0.04 + 0.06 * math.cos(math.pi * t / 2) ** 2),
 }
-VMAX = 10.0                                                   # optimal lengths a second
 
 
 def path(fixed, end, sense, angle):
