@@ -19,7 +19,7 @@
   // Pages for users come before those about the code.
   const weight = (page) => {
     for (const [start, value] of [["reference/model_file", 0.8], ["reference/numerics", 0.5], ["reference/", 1], ["how_to/add", 0.5], ["how_to/read", 0.5], ["how_to/", 1], ["quick_start/", 1], ["python/", 1],
-      ["api/python", 0.6], ["api/", 0.35], ["theory/index", 0.3], ["theory/", 0.7], ["decisions/", 0.4], ["examples/", 0.7], ["validation", 0.6], ["benchmarks", 0.6], ["architecture", 0.4], ["contributing", 0.4], ["changelog", 0.4]])
+      ["api/python", 0.6], ["api/", 0.35], ["theory/index", 0.3], ["theory/", 0.7], ["decisions/", 0.4], ["examples/", 0.7], ["tutorials/", 0.7], ["validation", 0.6], ["benchmarks", 0.6], ["architecture", 0.4], ["contributing", 0.4], ["changelog", 0.4]])
       if (page.startsWith(start)) return value;
     return 0.9;
   };
