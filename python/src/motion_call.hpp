@@ -112,8 +112,8 @@ class PointCall {
   std::unique_ptr<Reading> reading_;  ///< Kept between calls; gone during one.
 };
 
-/// A Python callable of the time, a coordinate and its rate: f(t, q, rate). It is borrowed,
-/// likewise.
+/// A Python callable of the time, a coordinate and its rate: f(t, q, rate). It is
+/// borrowed as well.
 class CoordinateCall {
  public:
   CoordinateCall(nb::handle function, nb::handle derivative)

@@ -192,6 +192,17 @@ inline Model flyball_governor() {
   return m.model;
 }
 
+/// The governor with springs a hundred and dampers a thousand times softer. Those of A05 have fast
+/// parts that no step resolves, which hide orders above 4.
+inline Model soft_governor() {
+  Model model = flyball_governor();
+  for (LoadSpec& load : model.loads) {
+    load.parameters.at("stiffness") *= 0.01;
+    load.parameters.at("damping") *= 0.001;
+  }
+  return model;
+}
+
 /// O. Brüls, A. Cardona, J. Comput. Nonlinear Dyn. 5 (2010) 031002: heavy top, spinning at
 /// 150 rad/s about a fixed point.
 inline Model heavy_top() {

@@ -30,16 +30,6 @@ Simulation run(Model model, double tolerance) {
 
 std::int64_t work(const Simulation& s) { return s.state().ledger.iterations; }
 
-/// The governor with springs a hundred and dampers a thousand times softer.
-Model soft_governor() {
-  Model model = flyball_governor();
-  for (LoadSpec& load : model.loads) {
-    load.parameters.at("stiffness") *= 0.01;
-    load.parameters.at("damping") *= 0.001;
-  }
-  return model;
-}
-
 // A body that falls along a rail against a viscous damper and rebounds from a stop.
 std::string bouncing(const std::string& limits) {
   return R"yaml(

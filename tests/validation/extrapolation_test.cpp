@@ -151,17 +151,6 @@ Model model_of(std::string text, const std::string& drive = "") {
   return io::read_model_text(text, "model.yaml");
 }
 
-/// The governor with springs a hundred and dampers a thousand times softer. Those of A05 have fast
-/// parts that no step resolves, which hide orders above 4.
-Model soft_governor() {
-  Model model = flyball_governor();
-  for (LoadSpec& load : model.loads) {
-    load.parameters.at("stiffness") *= 0.01;
-    load.parameters.at("damping") *= 0.001;
-  }
-  return model;
-}
-
 struct Extrapolated {
   std::string name;
   Model model;

@@ -32,8 +32,8 @@ class BeamCurve {
   /// Derivatives of (h, g) of both nodes of an element by s. @param order  0, 1 or 2.
   using Pair = Eigen::Matrix2d;  ///< A row for each node: h, g.
   [[nodiscard]] Pair at(int element, double s, int order) const;
-  /// Mean slope of (h, g) over a part of an element, without cancellation: the derivative if it is
-  /// of length zero.
+  /// Mean slope of (h, g) over a part of an element, without cancellation: the derivative where the
+  /// part has no length.
   [[nodiscard]] Pair slope(int element, double from, double to) const;
 
  private:

@@ -36,7 +36,7 @@ struct RunningCableSpec {
 struct CableLineNow {
   std::vector<Vec3> points;     ///< World [m].
   std::vector<double> lengths;  ///< Of the pieces between them, along the cable [m].
-  /// Of each point: its obstacle, or one of these.
+  /// Obstacle of each point, or one of these.
   std::vector<int> winding;
   static constexpr int kPoint = -1;  ///< A point of the cable.
   static constexpr int kFree = -2;   ///< Of a straight span past an obstacle.

@@ -47,9 +47,9 @@ struct SlideReport {
 ///
 ///   g_k = d_k·(x_b − X(s)) = 0   (k = 1, 2, 3),   F·T + ... = Q,   F = Σ λ_k d_k,
 ///
-/// the last of which is the balance along the beam: no force F along the tangent T besides Q, that
-/// of the springs and drives along it. Forces are the gradient of g at mean positions and mean
-/// weights of nodes, T is the divided difference of the curve at mean positions: in this form
+/// the last of which is the balance along the beam: no force F along the tangent T besides
+/// the force Q of springs and drives along it. Forces are the gradient of g at mean positions and
+/// mean weights of nodes, T is the divided difference of the curve at mean positions: in this form
 /// energy and both momenta are conserved exactly at ρ∞ = 1, at any step and across nodes of the
 /// beam. @eq{slide-rows} @eq{slide-along}
 ///

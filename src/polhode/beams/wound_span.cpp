@@ -15,8 +15,8 @@ using Mat6x18 = Eigen::Matrix<double, 6, 3 * kWoundNodes>;
 
 /// Gauss's rule of two points on [0, 1].
 constexpr double kFirst = 0.21132486540518712, kSecond = 0.78867513459481288;
-/// Parts of the obstacle's size: a step of the points from which on the rule is corrected, and
-/// likewise where the cable lifts off or touches within it.
+/// Steps of the points from which on the rule is corrected, as parts of the obstacle's size: where
+/// the cable stays on or off it, and where it lifts off or touches within the step.
 constexpr double kCorrected = 1e-3, kCorrectedAtTouch = 1e-6;
 /// Rounding of the change of a length, by its bound and by the size.
 constexpr double kJump = 1e-9, kRound = 1e-11;

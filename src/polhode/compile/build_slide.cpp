@@ -145,7 +145,7 @@ class SlideBuilder {
     s.point = node(load_.b, turns ? Vec3(load_.Z_b + q.conjugate() * (on - at)) : load_.Z_b);
   }
 
-  /// Of all nodes so far.
+  /// Positions of all nodes so far [m].
   [[nodiscard]] std::vector<double> positions() const {
     std::vector<double> x;
     for (int i = 0; i < system_.nodes().count(); ++i)

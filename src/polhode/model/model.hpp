@@ -155,7 +155,7 @@ struct AnalysisSpec {
   std::optional<double> tolerance;  ///< Error per step for automatic steps [-].
   double rho_inf = 1.0;
   std::optional<int> order;  ///< 2 to 12; absent: 2, or chosen from tolerance.
-  /// Of orders above 2: automatic | composition | extrapolation.
+  /// Way to orders above 2: automatic | composition | extrapolation.
   std::string method = "automatic";
   std::string momentum_rate = "momentum";  ///< momentum | kinematic | kinematic_corrected.
   std::string solver = "automatic";        ///< automatic | tree | block_lu | klu | sparse_lu.

@@ -138,8 +138,8 @@ class LoadReader {
     require_effect(kind);
   }
 
-  /// A moment or force along a coordinate of a joint: over time that of a motor, over the rate that
-  /// of a damper.
+  /// A moment or force along a coordinate of a joint: the moment of a motor over time, or that of a
+  /// damper over the rate.
   void read_on_joint(bool turns) {
     load_.joint = read_joint("joint", section_.find("joint"), &load_.a, &load_.b);
     read_stays();
