@@ -14,6 +14,27 @@ import polhode
 
 ROUNDS, CALLS = 200, 50
 LINKS = 7
+LYING = [0, 1.4, 0, 0.2, 0, 0, 0]  # just above the table
+
+
+def arm_on_a_table(**contact):
+    """The arm with links of 30 cm by 8 cm, fallen onto a table that does not slip."""
+    m = arm()
+    m.contacts = {"default": {"friction": 0.5, **contact}}
+    m.add_body("table", fixed=True, position=[0, 0, -0.06], shape={"box": [6, 6, 0.02]}, contact={})
+    for i in range(LINKS):
+        m.bodies[f"link{i}"].shape = {"capsule": [0.08, 0.3]}
+        m.bodies[f"link{i}"].contact = {}
+    sim = polhode.Simulation(m, tau=True)
+    sim.reset(LYING)
+    while sim.time < 2:
+        damped(sim)
+    return sim
+
+
+def damped(sim):
+    sim.tau = -2 * sim.qd
+    sim.step()
 
 
 def arm():
@@ -27,15 +48,17 @@ def arm():
     return m
 
 
-def mujoco_arm():
+def mujoco_arm(table=False):
     """The same arm, with MuJoCo's default of one step, semi-implicit Euler of 1 ms."""
+    shape = '<geom type="capsule" pos="0 0.01 0.15" size="0.04 0.11"/>' if table else ""
+    floor = '<geom type="box" pos="0 0 -0.06" size="3 3 0.01"/>' if table else ""
     open_, close = "", ""
     for i in range(LINKS):
         place = f"{0.02 if i else 0} 0 {0.3 if i else 0}"
         open_ += (f'<body pos="{place}"><joint type="hinge" axis="{"0 1 0" if i % 2 else "0 0 1"}"/>'
-                  f'<inertial pos="0 0.01 0.15" mass="{2 - 0.2 * i}" diaginertia="0.02 0.03 0.02"/>')
+                  f'<inertial pos="0 0.01 0.15" mass="{2 - 0.2 * i}" diaginertia="0.02 0.03 0.02"/>{shape}')
         close += "</body>"
-    return f'<mujoco><option timestep="0.001" gravity="0 0 -9.81"/><worldbody>{open_}{close}</worldbody></mujoco>'
+    return f'<mujoco><option timestep="0.001" gravity="0 0 -9.81"/><worldbody>{floor}{open_}{close}</worldbody></mujoco>'
 
 
 def fastest(function, calls=CALLS):
@@ -86,6 +109,10 @@ def measure_polhode():
         "reset": fastest(sim.reset, 50),
         "reset to q, qd": fastest(lambda: sim.reset(q0, hold), 20),
     })
+    for law in "barrier", "rigid":
+        lying = arm_on_a_table(law=law)
+        found[f"qd, tau and step, lying on a table, {law}"] = fastest(lambda: damped(lying), 20)
+        assert np.abs(lying.qd).max() < 1e-6, lying.qd
     return found
 
 
@@ -121,6 +148,17 @@ def measure_mujoco():
     arguments = (M, data.qM) if hasattr(data, "qM") else (data, M)  # before version 4, and since
     found["mass matrix"] = fastest(lambda: mujoco.mj_fullM(model, *arguments))
     found["reset"] = fastest(lambda: mujoco.mj_resetData(model, data))
+    model = mujoco.MjModel.from_xml_string(mujoco_arm(table=True))
+    data = mujoco.MjData(model)
+    data.qpos[:] = LYING
+
+    def damped():
+        data.qfrc_applied[:] = -2 * data.qvel
+        mujoco.mj_step(model, data)
+
+    while data.time < 2:
+        damped()
+    found["qd, tau and step, lying on a table, barrier"] = fastest(damped, 20)
     print(f"MuJoCo {mujoco.__version__}")
     return found
 

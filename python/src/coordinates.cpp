@@ -19,11 +19,37 @@ auto& counted(const System& system, SomeState& state, const Angle& angle) {
   return state.history[static_cast<std::size_t>(ref.first_history + angle.history)];
 }
 
+/// Interactions with rows that a state can switch off.
+std::vector<int> switched_rows(const System& system) {
+  std::vector<int> list;
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
+    if (ref.rows > 0 && system.traits(ref).off >= 0) list.push_back(i);
+  }
+  return list;
+}
+
+std::vector<int> off_of(const System& system, const State& state, const std::vector<int>& among) {
+  std::vector<int> list;
+  for (const int i : among)
+    if (system.is_off(state, i)) list.push_back(i);
+  return list;
+}
+
+std::vector<std::string> names_of(const System& system, const std::vector<int>& interactions) {
+  std::vector<std::string> names;
+  for (const int i : interactions)
+    names.push_back(system.name(system.interactions()[static_cast<std::size_t>(i)]));
+  return names;
+}
+
 }  // namespace
 
-Coordinates::Coordinates(const Model& model, const System& system,
+Coordinates::Coordinates(const Model& model, const System& system, const State& state,
                          const std::vector<std::string>& preferred)
-    : space_(model, preferred),
+    : switched_(switched_rows(system)),
+      off_(off_of(system, state, switched_)),
+      space_(model, preferred, names_of(system, off_)),
       limits_(coordinate_limits(model, space_)),
       fixed_(space_.model_motions()) {
   int moving = 0;
@@ -56,6 +82,10 @@ Coordinates::Coordinates(const Model& model, const System& system,
       if (joint.free_angle(names[i])) ++angle.history;
     angles_.push_back(angle);
   }
+}
+
+bool Coordinates::are_of(const System& system, const State& state) const {
+  return off_of(system, state, switched_) == off_;
 }
 
 JointSpace::Motions Coordinates::motions(const System& system, const State& state) const {

@@ -10,11 +10,16 @@
 
 namespace polhode::python {
 
-/// Joint coordinates of the states of a simulation.
+/// Joint coordinates of the states of a simulation in which the same joints act.
 class Coordinates {
  public:
+  /// @param state      Joints and other rows that are switched off in it have no part.
   /// @param preferred  See JointSpace.
-  Coordinates(const Model& model, const System& system, const std::vector<std::string>& preferred);
+  Coordinates(const Model& model, const System& system, const State& state,
+              const std::vector<std::string>& preferred);
+
+  /// Whether the same joints and rows are switched off in a state.
+  [[nodiscard]] bool are_of(const System& system, const State& state) const;
 
   [[nodiscard]] const JointSpace& space() const { return space_; }
   [[nodiscard]] const CoordinateLimits& limits() const { return limits_; }
@@ -38,6 +43,8 @@ class Coordinates {
     int history = 0;  ///< Into the history of the joint.
   };
 
+  std::vector<int> switched_;  ///< Interactions with rows that can be switched off.
+  std::vector<int> off_;       ///< Those of them that are off.
   JointSpace space_;
   CoordinateLimits limits_;
   std::vector<double> play_;

@@ -80,6 +80,11 @@ void Engine::put(const std::vector<BodyMotion>& moving, const std::string& where
                      "Change the model and start a new simulation");
   const System& system = simulation_->system();
   State state = system.initial_state();
+  for (std::size_t i = 0; i < system.interactions().size(); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    if (system.is_off(simulation_->state(), static_cast<int>(i)))
+      system.group(ref.group).switch_off(ref.item, state.history.data() + ref.first_history);
+  }
   for (std::size_t i = 0; i < moving.size(); ++i)
     state.set_motion(system.slot(static_cast<int>(i)), moving[i]);
   state.t = simulation_->time();
@@ -124,8 +129,10 @@ void Engine::set_motions(const std::map<int, BodyMotion>& motions) {
 }
 
 const Coordinates& Engine::coordinates() {
-  if (!coordinates_)
-    coordinates_ = std::make_shared<const Coordinates>(model(), simulation_->system(), preferred_);
+  const System& system = simulation_->system();
+  if (!coordinates_ || !coordinates_->are_of(system, simulation_->state()))
+    coordinates_ =
+        std::make_shared<const Coordinates>(model(), system, simulation_->state(), preferred_);
   return *coordinates_;
 }
 

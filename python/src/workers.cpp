@@ -115,6 +115,9 @@ nb::tuple advance_all(Workers& workers, const std::vector<Engine*>& engines,
         messages[i] = advance(**uses[i], until[i]);
         if (!observe) return;
         const Coordinates& of = engines[i]->coordinates();
+        if (of.size() != n)
+          throw InputError("coordinates", "change in number where an event switches a joint",
+                           "Use step() of single simulations");
         const Simulation& simulation = **uses[i];
         const JointSpace::Motions motions = of.motions(simulation.system(), simulation.state());
         const std::vector<double> q = of.positions(simulation.system(), simulation.state(),

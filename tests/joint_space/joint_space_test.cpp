@@ -90,6 +90,28 @@ TEST(JointSpace, OfADoublePendulumHasItsClosedForm) {
   }
 }
 
+TEST(JointSpace, LeavesOutWhatIsSwitchedOff) {
+  // Without the elbow the second bar is free, and the arm a pendulum about its shoulder.
+  using P = DoublePendulum;
+  const JointSpace open(P::model(), {}, std::vector<std::string>{"elbow"});
+  EXPECT_THAT(names_of(open), ElementsAre("shoulder", "two.x", "two.y", "two.z", "two.rx",
+                                          "two.ry", "two.rz"));
+  const Numbers M = open.mass_matrix(open.model_motions());
+  EXPECT_NEAR(M[0], P::I1 + P::m1 * P::c1 * P::c1, kRoundOff);
+  EXPECT_NEAR(M[1], 0.0, kRoundOff);
+  EXPECT_NEAR(M[8], P::m2, kRoundOff);
+
+  // A weld that closes a loop leaves the elbow alone; switched off it takes nothing.
+  Model held = P::model();
+  JointSpec weld = held.joints[0];
+  weld.name = "weld";
+  weld.type = "fixed";
+  held.joints.push_back(weld);
+  EXPECT_THAT(names_of(JointSpace(held)), ElementsAre("elbow"));
+  EXPECT_THAT(names_of(JointSpace(held, {}, std::vector<std::string>{"weld"})),
+              ElementsAre("shoulder", "elbow"));
+}
+
 TEST(JointSpace, CountsTurnsNearGivenAngles) {
   const JointSpace space(DoublePendulum::model());
   const Motions at = space.place(space.model_motions(), Numbers{20.0, -31.0});

@@ -40,7 +40,10 @@ VectorXd vector_of(std::span<const double> x) {
   return Eigen::Map<const VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
 }
 
-void refuse_others(const Model& model) {
+void refuse_others(const Model& model, std::span<const std::string> released) {
+  const auto acts = [&](const std::string& name) {
+    return std::ranges::find(released, name) == released.end();
+  };
   if (!model.solids.empty())
     throw InputError(format("solids.{}", model.solids.front().name),
                      "deforms, and has no coordinates of joints", "Leave it out of the model");
@@ -51,12 +54,12 @@ void refuse_others(const Model& model) {
           format("is a node of '{}', which has no coordinates of joints", body.node_of),
           "Leave beams and meshed cables out of the model");
   for (const JointSpec& joint : model.joints)
-    if (joint.motion)
+    if (joint.motion && acts(joint.name))
       throw InputError(format("joints.{}.motion", joint.name),
                        "moves a frame with time, so that coordinates do not determine the position",
                        "Give the motion to a motor of a joint");
   for (const LoadSpec& load : model.loads)
-    if (load.solid < 0 && load_kind(load.type).place == LoadPlace::wheel)
+    if (load.solid < 0 && load_kind(load.type).place == LoadPlace::wheel && acts(load.name))
       throw InputError(format("loads.{}", load.name),
                        "rolls, which restricts velocities but no coordinates",
                        "Leave it out of the model");
@@ -71,8 +74,9 @@ struct Inertance {
 }  // namespace
 
 struct JointSpace::Impl {
-  Impl(const Model& given, std::span<const std::string> preferred)
-      : model(given), tree((refuse_others(given), given), preferred) {
+  Impl(const Model& given, std::span<const std::string> preferred,
+       std::span<const std::string> released)
+      : model(given), tree((refuse_others(given, released), given), preferred, released) {
     for (BodySpec& body : model.bodies) {
       BodyMotion m;
       m.r = body.position;
@@ -83,8 +87,9 @@ struct JointSpace::Impl {
       // an inertia without effect on the motion, which keeps M regular
       if (body.point_mass) body.inertia = body.mass * Mat3::Identity();
     }
-    for (const LoadSpec& load : model.loads) add_inertance(load);
-    rows.emplace(model, tree);
+    for (const LoadSpec& load : model.loads)
+      if (std::ranges::find(released, load.name) == released.end()) add_inertance(load);
+    rows.emplace(model, tree, released);
     if (rows->size() == 0) rows.reset();
     choose(preferred);
   }
@@ -406,8 +411,9 @@ struct JointSpace::Impl {
   std::optional<InputError> unplaced_inerter;  ///< Refusal of equations with it.
 };
 
-JointSpace::JointSpace(const Model& model, std::span<const std::string> preferred)
-    : impl_(std::make_unique<const Impl>(model, preferred)) {}
+JointSpace::JointSpace(const Model& model, std::span<const std::string> preferred,
+                       std::span<const std::string> released)
+    : impl_(std::make_unique<const Impl>(model, preferred, released)) {}
 JointSpace::~JointSpace() = default;
 JointSpace::JointSpace(JointSpace&&) noexcept = default;
 

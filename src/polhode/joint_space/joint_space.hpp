@@ -44,8 +44,10 @@ class JointSpace {
   /// @param model      Its joints must be assembled, unless it has no loops.
   /// @param preferred  Names of coordinates that are to be independent; others are so if these do
   /// not determine the position, in the order of the joints.
+  /// @param released   Names of joints, and of loads with rows, that an event has switched off.
   /// @throws InputError for solids, beams, joints that move as prescribed, unknown names.
-  explicit JointSpace(const Model& model, std::span<const std::string> preferred = {});
+  explicit JointSpace(const Model& model, std::span<const std::string> preferred = {},
+                      std::span<const std::string> released = {});
   ~JointSpace();
   JointSpace(JointSpace&&) noexcept;
 

@@ -10,8 +10,12 @@ namespace polhode {
 
 namespace {
 
+bool has(std::span<const std::string> list, const std::string& name) {
+  return std::ranges::find(list, name) != list.end();
+}
+
 /// The model with bodies, joints and rows alone.
-Model with_rows_alone(const Model& model) {
+Model with_rows_alone(const Model& model, std::span<const std::string> released) {
   Model bare;
   for (BodySpec body : model.bodies) {
     body.shapes.clear();
@@ -27,7 +31,7 @@ Model with_rows_alone(const Model& model) {
     bare.joints.push_back(std::move(joint));
   }
   for (const LoadSpec& load : model.loads) {
-    if (load.solid >= 0 || load.of_motion.index() != 0) continue;
+    if (load.solid >= 0 || load.of_motion.index() != 0 || has(released, load.name)) continue;
     const LoadKind& kind = load_kind(load.type);
     if (kind.parts > 1 || !kind.drives.empty()) continue;
     bare.loads.push_back(load);
@@ -37,15 +41,17 @@ Model with_rows_alone(const Model& model) {
 
 }  // namespace
 
-LoopRows::LoopRows(const Model& model, const TreeSpace& tree)
-    : tree_(tree), system_(build_system(with_rows_alone(model), &map_)) {
+LoopRows::LoopRows(const Model& model, const TreeSpace& tree,
+                   std::span<const std::string> released)
+    : tree_(tree), system_(build_system(with_rows_alone(model, released), &map_)) {
   model_body_.assign(static_cast<std::size_t>(system_.body_count()), kGround);
   for (std::size_t i = 0; i < map_.body.size(); ++i)
     if (map_.body[i] != kGround)
       model_body_[static_cast<std::size_t>(map_.body[i])] = static_cast<int>(i);
   std::vector<char> skipped(system_.interactions().size(), 0);
   for (std::size_t i = 0; i < map_.joint.size(); ++i)
-    if (tree.has(static_cast<int>(i))) skipped[static_cast<std::size_t>(map_.joint[i])] = 1;
+    if (tree.has(static_cast<int>(i)) || has(released, model.joints[i].name))
+      skipped[static_cast<std::size_t>(map_.joint[i])] = 1;
   std::vector<int> first_row(system_.interactions().size(), -1);
   for (std::size_t i = 0; i < system_.interactions().size(); ++i) {
     const InteractionRef& ref = system_.interactions()[i];

@@ -14,7 +14,8 @@ namespace polhode {
 class LoopRows {
  public:
   /// Rows of a model; joints that a stiffness enforces count as exact.
-  LoopRows(const Model& model, const TreeSpace& tree);
+  /// @param released  Names of joints and loads that do not act.
+  LoopRows(const Model& model, const TreeSpace& tree, std::span<const std::string> released);
 
   [[nodiscard]] int size() const { return rows_; }
 

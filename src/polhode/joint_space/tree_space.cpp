@@ -30,12 +30,13 @@ std::string name_of(const std::string& of, const std::string& coordinate, std::s
   return count == 1 ? of : format("{}.{}", of, coordinate);
 }
 
-std::vector<Candidate> candidates(const Model& model, std::span<const std::string> preferred) {
+std::vector<Candidate> candidates(const Model& model, std::span<const std::string> preferred,
+                                  std::span<const std::string> released) {
   std::vector<Candidate> list;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const JointSpec& joint = model.joints[i];
     const JointKind& kind = joint_kind(joint.type);
-    if (kind.points_apart) continue;
+    if (kind.points_apart || std::ranges::find(released, joint.name) != released.end()) continue;
     const Joint item(joint.name, joint.type, {joint.a, joint.b},
                      kind.recipe({joint.Z_a, joint.Z_b, joint.R_a, joint.R_b},
                                  {.free = joint.free, .values = joint.parameters}));
@@ -60,7 +61,8 @@ std::vector<Candidate> candidates(const Model& model, std::span<const std::strin
 
 }  // namespace
 
-TreeSpace::TreeSpace(const Model& model, std::span<const std::string> preferred)
+TreeSpace::TreeSpace(const Model& model, std::span<const std::string> preferred,
+                     std::span<const std::string> released)
     : in_tree_(model.joints.size(), 0), to_(model.bodies.size(), -1) {
   const int bodies = static_cast<int>(model.bodies.size());
   const auto is_fixed = [&](int body) {
@@ -69,7 +71,7 @@ TreeSpace::TreeSpace(const Model& model, std::span<const std::string> preferred)
   const auto set_of = [&](int body) { return is_fixed(body) ? 0 : body + 1; };
   DisjointSets sets(static_cast<std::size_t>(bodies) + 1);
   std::vector<Candidate> chosen;
-  for (Candidate& c : candidates(model, preferred)) {
+  for (Candidate& c : candidates(model, preferred, released)) {
     const JointSpec& joint = model.joints[static_cast<std::size_t>(c.joint)];
     const int a = set_of(joint.a), b = set_of(joint.b);
     if (sets.first_of(a) == sets.first_of(b)) {

@@ -33,7 +33,9 @@ class TreeSpace {
   using Motions = JointSpace::Motions;
 
   /// @param preferred  Names of coordinates whose joints are in the tree if they can be.
-  TreeSpace(const Model& model, std::span<const std::string> preferred);
+  /// @param released   Names of joints that do not act.
+  TreeSpace(const Model& model, std::span<const std::string> preferred,
+            std::span<const std::string> released);
 
   [[nodiscard]] const std::vector<IndependentCoordinate>& coordinates() const { return names_; }
   [[nodiscard]] int size() const { return static_cast<int>(names_.size()); }
