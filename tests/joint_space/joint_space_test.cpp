@@ -94,8 +94,8 @@ TEST(JointSpace, LeavesOutWhatIsSwitchedOff) {
   // Without the elbow the second bar is free, and the arm a pendulum about its shoulder.
   using P = DoublePendulum;
   const JointSpace open(P::model(), {}, std::vector<std::string>{"elbow"});
-  EXPECT_THAT(names_of(open), ElementsAre("shoulder", "two.x", "two.y", "two.z", "two.rx",
-                                          "two.ry", "two.rz"));
+  EXPECT_THAT(names_of(open),
+              ElementsAre("shoulder", "two.x", "two.y", "two.z", "two.rx", "two.ry", "two.rz"));
   const Numbers M = open.mass_matrix(open.model_motions());
   EXPECT_NEAR(M[0], P::I1 + P::m1 * P::c1 * P::c1, kRoundOff);
   EXPECT_NEAR(M[1], 0.0, kRoundOff);

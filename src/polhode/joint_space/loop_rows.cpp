@@ -41,8 +41,7 @@ Model with_rows_alone(const Model& model, std::span<const std::string> released)
 
 }  // namespace
 
-LoopRows::LoopRows(const Model& model, const TreeSpace& tree,
-                   std::span<const std::string> released)
+LoopRows::LoopRows(const Model& model, const TreeSpace& tree, std::span<const std::string> released)
     : tree_(tree), system_(build_system(with_rows_alone(model, released), &map_)) {
   model_body_.assign(static_cast<std::size_t>(system_.body_count()), kGround);
   for (std::size_t i = 0; i < map_.body.size(); ++i)
