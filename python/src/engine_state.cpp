@@ -32,6 +32,24 @@ void refuse_outside_limits(const Coordinates& of, const std::vector<double>& pos
   }
 }
 
+/// Copies what events have done in a simulation to another state of its system.
+void keep_events(const Simulation& simulation, State& to) {
+  const System& system = simulation.system();
+  const State& from = simulation.state();
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
+    if (system.is_off(from, i))
+      system.group(ref.group).switch_off(ref.item, to.history.data() + ref.first_history);
+  }
+  const int events = static_cast<int>(simulation.summary().events.size());
+  for (int e = 0; e < events; ++e)
+    for (const EventMemory::Entry entry :
+         {EventMemory::kCount, EventMemory::kTime, EventMemory::kSpent}) {
+      const auto k = static_cast<std::size_t>(system.memory() + EventMemory::kSize * e + entry);
+      to.history[k] = from.history[k];
+    }
+}
+
 }  // namespace
 
 std::string advance(Simulation& simulation, double until) {
@@ -80,11 +98,7 @@ void Engine::put(const std::vector<BodyMotion>& moving, const std::string& where
                      "Change the model and start a new simulation");
   const System& system = simulation_->system();
   State state = system.initial_state();
-  for (std::size_t i = 0; i < system.interactions().size(); ++i) {
-    const InteractionRef& ref = system.interactions()[i];
-    if (system.is_off(simulation_->state(), static_cast<int>(i)))
-      system.group(ref.group).switch_off(ref.item, state.history.data() + ref.first_history);
-  }
+  keep_events(*simulation_, state);
   for (std::size_t i = 0; i < moving.size(); ++i)
     state.set_motion(system.slot(static_cast<int>(i)), moving[i]);
   state.t = simulation_->time();
