@@ -36,10 +36,11 @@ void refuse_outside_limits(const Coordinates& of, const std::vector<double>& pos
 void keep_events(const Simulation& simulation, State& to) {
   const System& system = simulation.system();
   const State& from = simulation.state();
-  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
-    if (system.is_off(from, i))
-      system.group(ref.group).switch_off(ref.item, to.history.data() + ref.first_history);
+  for (const InteractionRef& ref : system.interactions()) {
+    const int off = system.traits(ref).off;
+    if (off < 0) continue;
+    const auto k = static_cast<std::size_t>(ref.first_history + off);
+    to.history[k] = from.history[k];
   }
   const int events = static_cast<int>(simulation.summary().events.size());
   for (int e = 0; e < events; ++e)
