@@ -34,8 +34,8 @@ class JointSpace:
     loops they are independent ones, which determine the others. Rates are their derivatives, of three free rotations
     (a ball joint, a free body) the angular velocity in the axes of the joint's first body (the world's). The equations
     of motion are M(q) qdd + c(q, qd) + g(q) = tau, with the forces and moments of all loads in tau. Everything here
-    raises ModelError for a model without such coordinates: one with solids, beams or rolling wheels. Where events switch
-    joints, coordinates are those of the joints that act at the present time.
+    raises ModelError for a model without such coordinates: one with solids, beams or rolling wheels. Where events
+    switch joints, coordinates are those of the joints that act at the present time.
     """
 
     _engine: Any
