@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robots' files on the command line.
+#include <cstdio>
+#include <sstream>
+
 #include <gmock/gmock.h>
 
 #include "command_line.hpp"
@@ -69,6 +72,45 @@ TEST_F(Robot, AWorldOfGazeboIsOneToo) {
   EXPECT_THAT(report.out, HasSubstr("<sensor> in <link> has no influence on the motion"));
   EXPECT_EQ(run({"convert", "hall.world", "hall.yaml"}).code, 0);
   EXPECT_EQ(run({"check", "hall.yaml"}).code, 0);
+}
+
+// A block on a spring of 100 N/m: a force of 8 N that grows and goes back to its half.
+TEST_F(Robot, AModelOfFebioIsOneTooAndItsStaticsIsAHistory) {
+  write("spring.feb", R"(<febio_spec version="4.0"><Module type="solid"/>
+<Control><analysis>STATIC</analysis><time_steps>20</time_steps><step_size>0.1</step_size></Control>
+<Material><material id="1" name="base" type="rigid body"><center_of_mass>0,0,0</center_of_mass></material>
+<material id="2" name="bar" type="rigid body"><density>1000</density></material></Material>
+<Mesh><Nodes><node id="1">0,0,0</node><node id="2">1,0,0</node><node id="3">0,1,0</node><node id="4">0,0,1</node></Nodes>
+<Elements type="tet4" name="p"><elem id="1">1,2,3,4</elem></Elements></Mesh>
+<MeshDomains><SolidDomain name="p" mat="bar"/></MeshDomains>
+<Rigid><rigid_bc type="rigid_fixed"><rb>base</rb><Rx_dof>1</Rx_dof><Ry_dof>1</Ry_dof><Rz_dof>1</Rz_dof><Ru_dof>1</Ru_dof><Rv_dof>1</Rv_dof><Rw_dof>1</Rw_dof></rigid_bc>
+<rigid_bc type="rigid_fixed"><rb>bar</rb><Rx_dof>1</Rx_dof><Ry_dof>1</Ry_dof><Ru_dof>1</Ru_dof><Rv_dof>1</Rv_dof><Rw_dof>1</Rw_dof></rigid_bc>
+<rigid_load type="rigid_force"><rb>bar</rb><dof>Rz</dof><value lc="1">8</value></rigid_load>
+<rigid_connector name="k" type="rigid spring"><body_a>base</body_a><body_b>bar</body_b><k>100</k><insertion_a>0.25,0.25,-1</insertion_a><insertion_b>0.25,0.25,0.25</insertion_b></rigid_connector></Rigid>
+<LoadData><load_controller id="1" type="loadcurve"><points><pt>0,0</pt><pt>1,1</pt><pt>2,0.5</pt></points></load_controller></LoadData>
+</febio_spec>
+)");
+  write("spring.overlay.yaml", "format: 1\noutput: {probes: {bar: {body: bar}}}\n");
+  const auto report = run({"import", "spring.feb", "--json"});
+  ASSERT_EQ(report.code, 0) << report.err;
+  EXPECT_EQ(value(report.out, "format"), "\"FEBio\"");
+  EXPECT_EQ(value(report.out, "freedoms"), "1");
+  const auto direct = run({"run", "spring.feb", "--json", "--quiet"});
+  ASSERT_EQ(direct.code, 0) << direct.err;
+  ASSERT_EQ(run({"convert", "spring.feb", "spring.yaml"}).code, 0);
+  const auto converted = run({"run", "spring.yaml", "--json", "--quiet", "-o", "c"});
+  ASSERT_EQ(converted.code, 0) << converted.err;
+  EXPECT_EQ(value(direct.out, "result_hash"), value(converted.out, "result_hash"));
+  std::istringstream rows(read("c/probes/bar.csv"));
+  std::string row;
+  int halves = 0;
+  while (std::getline(rows, row)) {
+    double t = 0, x = 0, y = 0, z = 0;
+    if (std::sscanf(row.c_str(), "%lf,%lf,%lf,%lf", &t, &x, &y, &z) != 4) continue;
+    EXPECT_NEAR(z - 0.25, 0.08 * (t <= 1 ? t : 1.5 - t / 2), 1e-9) << row;
+    ++halves;
+  }
+  EXPECT_GE(halves, 20);
 }
 
 TEST_F(Robot, FaultsAreThoseOfItsLines) {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes one reader: tests/fuzz/run.sh [seconds, default 600] [build folder] [reader: model (default),
-# gmsh, vtu, abaqus, stl, obj, urdf, mjcf, sdf, results, checkpoint, lists]. Inputs that cause failures are stored in <build folder>/crashes, and the
+# gmsh, vtu, abaqus, stl, obj, urdf, mjcf, sdf, feb, results, checkpoint, lists]. Inputs that cause failures are stored in <build folder>/crashes, and the
 # script fails.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -20,14 +20,14 @@ case $reader in
   stl | obj)
     corpus="$root/tests/geometry/data $root/tests/fuzz/found_in_surfaces"
     words=surface.dict ;;
-  urdf | mjcf | sdf)
+  urdf | mjcf | sdf | feb)
     corpus="$root/tests/corpus/robots"
     words=robot.dict ;;
   results | checkpoint | lists)
     corpus=
     words= ;;
   *)
-    echo "There is no reader '$reader': model, gmsh, vtu, abaqus, stl, obj, urdf, mjcf, sdf, results, checkpoint or lists." >&2
+    echo "There is no reader '$reader': model, gmsh, vtu, abaqus, stl, obj, urdf, mjcf, sdf, feb, results, checkpoint or lists." >&2
     exit 2 ;;
 esac
 

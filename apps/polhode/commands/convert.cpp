@@ -113,9 +113,9 @@ int convert(ConvertOptions& options) {
 Action add_convert(CLI::App& command) {
   const auto options = std::make_shared<ConvertOptions>();
   command
-      .add_option(
-          "RESULTS", options->film.results,
-          "Results (results.h5 or their folder), or a robot's file (.urdf, .xacro, .xml, .sdf)")
+      .add_option("RESULTS", options->film.results,
+                  "Results (results.h5 or their folder), or a file of another program (.urdf, "
+                  ".xacro, .xml, .sdf, .feb)")
       ->required();
   add_set_option(command, options->model);
   command

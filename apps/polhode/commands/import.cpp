@@ -97,9 +97,9 @@ int report_import(const ImportCommand& options) {
   const io::ExpandedModel expanded =
       io::expanded_model(options.model.file, options.model.overrides);
   if (expanded.report.format.empty())
-    throw InputError(
-        "polhode import", quote(options.model.file) + " imports nothing",
-        "Give a robot's file (.urdf, .xacro, .xml), or a model file with the key import");
+    throw InputError("polhode import", quote(options.model.file) + " imports nothing",
+                     "Give a file of another program (.urdf, .xacro, .xml, .sdf, .feb), or a model "
+                     "file with the key import");
   const Simulation simulation(load_model(options.model));
   const RankReport rank = rank_report(simulation.system(), simulation.state());
   print(options.json ? report_json(expanded.report, simulation, rank).dump(2) + "\n"
@@ -113,7 +113,7 @@ Action add_import(CLI::App& command) {
   const auto options = std::make_shared<ImportCommand>();
   command
       .add_option("FILE", options->model.file,
-                  "URDF, xacro, MJCF or SDFormat file, or a model that imports one")
+                  "URDF, xacro, MJCF, SDFormat or FEBio file, or a model that imports one")
       ->required();
   command.add_flag("--report", options->report, "Print the report, which is the default");
   command.add_flag("--json", options->json, "Print it as one JSON object");

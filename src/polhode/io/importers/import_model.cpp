@@ -2,6 +2,7 @@
 #include <polhode/io/importers/import_model.hpp>
 
 #include <polhode/core/format.hpp>
+#include <polhode/io/importers/feb.hpp>
 #include <polhode/io/importers/mjcf.hpp>
 #include <polhode/io/importers/sdf.hpp>
 #include <polhode/io/importers/urdf.hpp>
@@ -18,7 +19,7 @@ bool is_sdf(const std::string& file) { return file.ends_with(".sdf") || file.end
 
 bool is_importable(const std::string& file) {
   return file.ends_with(".urdf") || file.ends_with(".xacro") || file.ends_with(".xml") ||
-         is_sdf(file);
+         file.ends_with(".feb") || is_sdf(file);
 }
 
 Imported import_model(const ImportOptions& options, const std::string& folder) {
@@ -26,6 +27,7 @@ Imported import_model(const ImportOptions& options, const std::string& folder) {
                          ? expanded_by_xacro(options.file, options.arguments)
                          : read_file(options.file);
   auto source = std::make_shared<SourceText>(options.file, std::move(text));
+  if (options.file.ends_with(".feb")) return import_feb(std::move(source), options, folder);
   if (is_sdf(options.file)) return import_sdf(std::move(source), options, folder);
   return options.file.ends_with(".xml") ? import_mjcf(std::move(source), options, folder)
                                         : import_urdf(std::move(source), options, folder);

@@ -40,7 +40,7 @@ struct ImportNote {
 
 /// A model of another program as the content of a model file.
 struct Imported {
-  std::string format;                        ///< "URDF", "MJCF", "SDFormat".
+  std::string format;                        ///< "URDF", "MJCF", "SDFormat", "FEBio".
   std::shared_ptr<const SourceText> source;  ///< For messages.
   SourceNode root;                           ///< Lines are those of the source.
   std::vector<ImportNote> notes;

@@ -52,6 +52,8 @@ class XmlFile {
   const Element* child(const Element& parent, const char* name);
   /// All children of a name.
   std::vector<const Element*> children(const Element& parent, const char* name);
+  /// Marks a tag as read, without what it contains.
+  void mark_read(const Element& element) { read_.insert(&element); }
   /// Marks a tag with all it contains as read.
   void skip(const Element& element);
 

@@ -24,7 +24,7 @@ std::string folder_of(const std::string& file) { return fs::path(file).parent_pa
 /// "robot" of "robot.urdf.xacro".
 fs::path overlay_beside(const std::string& file) {
   std::string stem = file;
-  for (const char* ending : {".xacro", ".urdf", ".xml", ".sdf", ".world"})
+  for (const char* ending : {".xacro", ".urdf", ".xml", ".sdf", ".world", ".feb"})
     if (stem.ends_with(ending)) stem.resize(stem.size() - std::string_view(ending).size());
   return stem + ".overlay.yaml";
 }
@@ -81,7 +81,7 @@ ImportOptions read_options(ReadContext& context, const SourceNode& node,
   if (!options.file.empty() && !is_importable(options.file) && context.diagnostics.empty())
     section.fault("file",
                   format("is {}, which is no file that can be imported", quote(options.file)),
-                  "Name a .urdf, .xacro, .sdf, .world or MJCF .xml file.");
+                  "Name a .urdf, .xacro, .sdf, .world, MJCF .xml or FEBio .feb file.");
   return options;
 }
 

@@ -8,13 +8,15 @@ using enum FieldKind;
 const FieldTable& import_fields() {
   static const FieldTable table{
       "import",
-      "A robot's file whose bodies, joints and loads become those of this model. What this file "
+      "A file of another program whose bodies, joints and loads become those of this model. What "
+      "this file "
       "gives for them in addition, or instead, is kept. Allowed in a file of its own, not in a "
       "part.",
       {
           {.name = "file",
            .kind = kText,
-           .meaning = "URDF, xacro, MJCF or SDFormat file, relative to the folder of this file.",
+           .meaning =
+               "URDF, xacro, MJCF, SDFormat or FEBio file, relative to the folder of this file.",
            .required = true},
           {.name = "base",
            .kind = kChoice,

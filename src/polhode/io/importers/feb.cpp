@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/feb.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/importers/feb_model.hpp>
+
+namespace polhode::io {
+
+namespace {
+
+using Element = XmlFile::Element;
+
+/// Reader of a whole file.
+class FebReader {
+ public:
+  explicit FebReader(FebModel& model) : model_(model), file_(model.file) {}
+
+  SourceNode read() {
+    const Element& root = file_.xml.root();
+    const NodeBuilder make = file_.make(root);
+    SourceNode result = make.map();
+    if (!check_version(root)) return result;
+    model_.joints = make.map();
+    model_.loads = make.map();
+    if (const Element* module = file_.child(root, "Module")) read_module(*module);
+    const Element* control = section("Control");
+    if (control == nullptr) {
+      file_.xml.fault(root, "the file has no <Control>",
+                      "Add it, in the file or in its only step.");
+      return result;
+    }
+    read_feb_control(model_, *control);
+    for (const Element* e : sections("LoadData")) model_.curves.read(*e, model_.duration);
+    model_.mesh = read_feb_mesh(file_, file_.child(root, "Mesh"), file_.child(root, "MeshDomains"));
+    if (const Element* materials = file_.child(root, "Material"))
+      read_feb_bodies(model_, *materials);
+    for (const Element* e : sections("Rigid")) read_feb_rigid(model_, *e);
+    for (const Element* e : sections("Loads")) read_feb_loads(model_, *e);
+    refuse_others();
+    make.put(result, "format", make.text("1"));
+    if (!model_.gravity.isZero(0.0)) make.put(result, "gravity", make.vector(model_.gravity));
+    make.put(result, "bodies", write_feb_bodies(model_));
+    if (!model_.joints.keys.empty()) make.put(result, "joints", std::move(model_.joints));
+    if (!model_.loads.keys.empty()) make.put(result, "loads", std::move(model_.loads));
+    write_feb_control(model_, *control, result);
+    file_.ignored.add_unread();
+    if (model_.bodies.empty())
+      file_.xml.fault(root, "the file has no rigid body", "Add a material of type \"rigid body\".");
+    return result;
+  }
+
+ private:
+  bool check_version(const Element& root) {
+    if (std::string_view(root.Name()) != "febio_spec") {
+      file_.xml.fault(root, format("the file's tag is <{}>, not <febio_spec>", root.Name()),
+                      "Give an FEBio file, which starts with <febio_spec version=\"4.0\">.");
+      return false;
+    }
+    const std::string version = file_.xml.required_text(root, "version");
+    if (version == "4.0") return true;
+    if (!version.empty())
+      file_.xml.fault(root, format("the version {} of FEBio's format is not read", quote(version)),
+                      "Export it as 4.0; FEBio Studio converts older files.");
+    return false;
+  }
+
+  void read_module(const Element& e) {
+    const std::string type = file_.type(e);
+    if (!type.empty() && type != "solid" && type != "explicit-solid")
+      file_.xml.fault(e, format("the module {} is not read", quote(type)),
+                      "Models of solids and rigid bodies are.");
+    file_.ignored.skip(e, {"units"});
+  }
+
+  /// Sections of a name, in the file and in its only step.
+  std::vector<const Element*> sections(const char* name) {
+    const Element& root = file_.xml.root();
+    std::vector<const Element*> list = file_.xml.children(root, name);
+    if (const Element* step = only_step())
+      for (const Element* e : file_.xml.children(*step, name)) list.push_back(e);
+    return list;
+  }
+
+  const Element* section(const char* name) {
+    const auto list = sections(name);
+    if (list.size() > 1)
+      file_.xml.fault(*list[1], format("<{}> stands twice", name), "Keep one of them.");
+    return list.empty() ? nullptr : list.front();
+  }
+
+  /// The step of a file that has one; null otherwise.
+  const Element* only_step() {
+    const Element* steps = file_.xml.child(file_.xml.root(), "Step");
+    if (steps == nullptr) return nullptr;
+    const auto list = file_.xml.children(*steps, "step");
+    if (list.size() > 1 && !refused_steps_) {
+      refused_steps_ = true;
+      file_.xml.fault(*list[1], format("the file has {} steps", list.size()),
+                      "Give one step; write the others as load curves, or run them as models.");
+    }
+    for (const Element* e : list) file_.ignored.attributes(*e, {"id", "name"});
+    return list.empty() ? nullptr : list.front();
+  }
+
+  void refuse_others() {
+    for (const char* name : {"Boundary", "Contact", "Constraints", "Discrete", "Initial",
+                             "MeshAdaptor", "MeshData", "Code", "Include"})
+      for (const Element* e : sections(name)) {
+        if (e->FirstChildElement() == nullptr && XmlFile::content(*e).value_or("").empty())
+          continue;
+        file_.refuse(*e, format("<{}> is not read", name), "Leave it out.");
+      }
+    const Element& root = file_.xml.root();
+    file_.ignored.skip(root, {"Globals", "Output"});
+  }
+
+  FebModel& model_;
+  FebFile& file_;
+  bool refused_steps_ = false;
+};
+
+}  // namespace
+
+FebBody* FebModel::body(const Element& parent, const char* tag) {
+  const std::string name = file.text(parent, tag);
+  std::vector<std::string> names;
+  for (FebBody& b : bodies) {
+    if (b.material == name) return &b;
+    names.push_back(b.material);
+  }
+  std::int64_t id = 0;
+  const char* end = name.data() + name.size();
+  if (!name.empty() && std::from_chars(name.data(), end, id).ptr == end)
+    for (FebBody& b : bodies)
+      if (b.id == id) return &b;
+  file.xml.fault(
+      parent, format("<{}> of <{}> is {}, which is no rigid body", tag, parent.Name(), quote(name)),
+      did_you_mean(name, names) + "Give the name of a material of type \"rigid body\".");
+  return nullptr;
+}
+
+std::string FebModel::add_joint(const Element& e, const std::string& name, SourceNode node) {
+  std::string chosen = file.name(e, name, joint_names);
+  file.make(e).put(joints, chosen, std::move(node));
+  return chosen;
+}
+
+std::string FebModel::add_load(const Element& e, const std::string& name, SourceNode node) {
+  std::string chosen = file.name(e, name, load_names);
+  file.make(e).put(loads, chosen, std::move(node));
+  return chosen;
+}
+
+SourceNode FebModel::vector(const Element& at, const std::array<FebValue, 3>& values,
+                            double factor) {
+  SourceNode list = file.make(at).list();
+  for (const FebValue& value : values) list.children.push_back(curves.node(value, factor));
+  return list;
+}
+
+Imported import_feb(std::shared_ptr<const SourceText> source, const ImportOptions& options,
+                    const std::string& folder) {
+  static_cast<void>(folder);  // Nothing in the result is in another file.
+  Imported result;
+  result.format = "FEBio";
+  result.source = source;
+  Diagnostics diagnostics(*source);
+  XmlFile xml(source, diagnostics);
+  FebFile file(xml, result.notes, options);
+  FebModel model(file);
+  result.root = FebReader(model).read();
+  diagnostics.throw_if_any();
+  return result;
+}
+
+}  // namespace polhode::io

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <polhode/io/importers/feb_file.hpp>
+
+namespace polhode::io {
+
+/// A piece of a load curve: a polynomial of the time since its beginning.
+struct FebPiece {
+  double from = 0.0, to = 0.0;     ///< [s]
+  std::array<double, 6> powers{};  ///< Coefficients, from the constant on.
+  [[nodiscard]] double at(double t) const;
+};
+
+/// A load curve as FEBio reads it.
+struct FebCurve {
+  enum class Rule : unsigned char { linear, step, smooth, smooth_step };
+  enum class Extend : unsigned char { constant, extrapolate, repeat, repeat_offset };
+  Rule rule = Rule::linear;
+  Extend extend = Extend::constant;
+  std::vector<std::array<double, 2>> points;  ///< Time and value, by time.
+
+  /// Pieces from 0, or the first point, up to a time at least.
+  /// @param most  Largest number of pieces; none are returned if there would be more.
+  [[nodiscard]] std::vector<FebPiece> pieces(double until, std::size_t most) const;
+};
+
+/// The load controllers of a file, as values of a model file.
+class FebCurves {
+ public:
+  explicit FebCurves(FebFile& file) : file_(file) {}
+
+  /// Reads <LoadData>.
+  /// @param until  End of the analysis [s]; curves that repeat are written out up to it.
+  void read(const XmlFile::Element& section, double until);
+
+  /// A value over time, times a factor.
+  [[nodiscard]] SourceNode node(const FebValue& value, double factor = 1.0);
+  /// Times of the points of a load curve; none of other controllers.
+  [[nodiscard]] std::vector<std::array<double, 2>> points(int controller) const;
+
+ private:
+  struct Controller {
+    const XmlFile::Element* at = nullptr;
+    std::string math;  ///< Expression of t in the language of a model file.
+    FebCurve curve;
+    bool usable = false;
+  };
+  void read_curve(const XmlFile::Element& e, Controller& controller);
+  SourceNode curve_node(const NodeBuilder& make, const FebValue& value,
+                        const Controller& controller, double factor);
+
+  FebFile& file_;
+  double until_ = 0.0;
+  std::map<int, Controller> controllers_;
+};
+
+/// An expression of FEBio in the language of a model file; "" if it has anything else.
+/// @param unknown  The part that is not known.
+[[nodiscard]] std::string expression_of_feb(const std::string& text, std::string& unknown);
+
+}  // namespace polhode::io

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <polhode/io/importers/feb_curves.hpp>
+#include <polhode/io/importers/feb_file.hpp>
+#include <polhode/io/importers/feb_mesh.hpp>
+
+namespace polhode::io {
+
+/// One of the six freedoms of a rigid body: x, y, z, and the rotations about them.
+struct FebFreedom {
+  enum class Kind : unsigned char { free, fixed, prescribed };
+  Kind kind = Kind::free;
+  FebValue value;
+  const XmlFile::Element* at = nullptr;
+};
+
+/// A rigid body: a material of type "rigid body".
+struct FebBody {
+  std::string material;  ///< As in the file.
+  std::string name;      ///< In the model.
+  std::int64_t id = 0;
+  const XmlFile::Element* at = nullptr;
+  geometry::MassProperties mesh;  ///< By integration; no mass without elements.
+  Vec3 com = Vec3::Zero();        ///< FEBio's centre of mass, about which it rotates [m].
+  Mat3 inertia = Mat3::Zero();    ///< As FEBio has it [kg m²].
+  std::array<FebFreedom, 6> freedoms;
+  bool euler = false;  ///< The rotations are angles about fixed axes x, y, z [deg].
+  std::optional<Vec3> velocity, spin;
+  std::vector<int> nodes;  ///< Of its elements.
+
+  [[nodiscard]] bool is_fixed() const;
+  [[nodiscard]] bool can_move() const;  ///< Whether a freedom is free.
+  /// Whether FEBio's centre of mass is that of the mesh.
+  [[nodiscard]] bool is_centred() const;
+};
+
+/// All that is read of an FEBio file, and the parts of the model that come from it.
+struct FebModel {
+  explicit FebModel(FebFile& f) : file(f), curves(f) {}
+
+  FebFile& file;
+  FebCurves curves;
+  FebMesh mesh;
+  std::vector<FebBody> bodies;
+  bool dynamic = false;
+  double duration = 0.0;
+  Vec3 gravity = Vec3::Zero();
+  SourceNode joints, loads;
+  std::set<std::string> joint_names, load_names;
+
+  /// Body of a tag that has its name or the number of its material; null after an error.
+  FebBody* body(const XmlFile::Element& parent, const char* tag);
+  /// Adds a joint or a load of a name, or of a similar one that is not taken. @returns the name.
+  std::string add_joint(const XmlFile::Element& e, const std::string& name, SourceNode node);
+  std::string add_load(const XmlFile::Element& e, const std::string& name, SourceNode node);
+  /// Vector over time.
+  SourceNode vector(const XmlFile::Element& at, const std::array<FebValue, 3>& values,
+                    double factor = 1.0);
+};
+
+/// Reads materials of rigid bodies, with the mass of their parts of the mesh.
+void read_feb_bodies(FebModel& model, const XmlFile::Element& section);
+/// Bodies of a model file.
+[[nodiscard]] SourceNode write_feb_bodies(FebModel& model);
+/// Reads <Rigid>.
+void read_feb_rigid(FebModel& model, const XmlFile::Element& section);
+/// Reads one <rigid_connector>.
+void read_feb_connector(FebModel& model, const XmlFile::Element& e);
+/// Reads <Loads>.
+void read_feb_loads(FebModel& model, const XmlFile::Element& section);
+/// Reads <Control>: whether the analysis is dynamic, and its length.
+void read_feb_control(FebModel& model, const XmlFile::Element& section);
+/// Analysis and output of a model file; after the load curves.
+void write_feb_control(FebModel& model, const XmlFile::Element& section, SourceNode& root);
+
+}  // namespace polhode::io

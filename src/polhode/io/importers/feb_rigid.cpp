@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/importers/feb_model.hpp>
+
+namespace polhode::io {
+
+namespace {
+
+using Element = XmlFile::Element;
+using Freedom = FebFreedom::Kind;
+
+/// Number of a freedom by its name: x and Rx are the same; -1 if there is none.
+int freedom_of(const std::string& name) {
+  static const std::vector<std::string> names{"x", "y", "z", "ru", "rv", "rw"};
+  std::string word = lower_case(name);
+  if (word == "rx" || word == "ry" || word == "rz") word.erase(0, 1);
+  if (word == "u" || word == "v" || word == "w") word = "r" + word;
+  const auto found = std::find(names.begin(), names.end(), word);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+/// Reader of constraints, starts and loads of rigid bodies.
+class RigidReader {
+ public:
+  explicit RigidReader(FebModel& model) : model_(model), file_(model.file) {}
+
+  void read_constraint(const Element& e) {
+    const std::string type = file_.type(e);
+    FebBody* body = model_.body(e, "rb");
+    if (type == "rigid_fixed") {
+      static const char* const tags[] = {"Rx_dof", "Ry_dof", "Rz_dof",
+                                         "Ru_dof", "Rv_dof", "Rw_dof"};
+      for (std::size_t k = 0; k < 6; ++k)
+        if (file_.boolean(e, tags[k], false) && body != nullptr &&
+            body->freedoms[k].kind == Freedom::free)
+          body->freedoms[k] = {Freedom::fixed, {}, &e};
+    } else if (type == "rigid_displacement" || type == "rigid_rotation") {
+      const int k = dof(e, type == "rigid_rotation");
+      const FebValue value = file_.value(e, "value");
+      static_cast<void>(file_.boolean(e, "relative", false));  // The first step starts at zero.
+      if (k >= 0 && body != nullptr) prescribe(e, *body, k, value);
+    } else if (type == "rigid_rotation_vector" || type == "rigid_euler_angles" ||
+               type == "rigid_euler_vector") {
+      const bool euler = type != "rigid_rotation_vector";
+      static const char* const vectors[] = {"vx", "vy", "vz"};
+      static const char* const angles[] = {"Ex", "Ey", "Ez"};
+      if (euler) file_.ignored.skip(e, {"convention"});
+      for (int k = 0; k < 3; ++k) {
+        const FebValue value = file_.value(e, euler ? angles[k] : vectors[k]);
+        if (body != nullptr) prescribe(e, *body, 3 + k, value);
+      }
+      if (body != nullptr) body->euler = euler;
+    } else if (!type.empty()) {
+      unknown(e, type);
+    }
+  }
+
+  void read_start(const Element& e) {
+    const std::string type = file_.type(e);
+    FebBody* body = model_.body(e, "rb");
+    if (type == "initial_rigid_velocity" || type == "initial_rigid_angular_velocity") {
+      const auto value = file_.vector(e, "value");
+      if (value && body != nullptr)
+        (type == "initial_rigid_velocity" ? body->velocity : body->spin) = *value;
+      if (!model_.dynamic)
+        file_.ignored.add(e, format("a start of type {}", type), "has no influence on statics");
+    } else if (!type.empty()) {
+      unknown(e, type);
+    }
+  }
+
+  void read_load(const Element& e) {
+    const std::string type = file_.type(e);
+    const std::string name = file_.xml.text(e, "name").value_or(type);
+    static_cast<void>(file_.boolean(e, "relative", false));
+    if (type == "rigid_force" || type == "rigid_moment")
+      return read_component(e, name, type == "rigid_moment");
+    if (type == "rigid_follower_force" || type == "rigid_follower_moment")
+      return read_follower(e, name, type == "rigid_follower_moment");
+    if (type == "rigid_axial_force") return read_axial(e, name);
+    if (!type.empty()) unknown(e, type);
+  }
+
+ private:
+  void unknown(const Element& e, const std::string& type) {
+    file_.refuse(e, format("<{}> of type {} is not read", e.Name(), quote(type)),
+                 "Leave it out, and add to the model what it means.");
+  }
+
+  /// Freedom of a tag: 0 to 5; -1 after an error.
+  int dof(const Element& e, bool turn) {
+    const std::string name = file_.text(e, "dof");
+    const int k = freedom_of(name);
+    if (k >= 0 && (k >= 3) == turn) return k;
+    file_.xml.fault(e, format("<dof> of <{}> is {}", e.Name(), quote(name)),
+                    turn ? "Write Ru, Rv or Rw." : "Write Rx, Ry or Rz.");
+    return -1;
+  }
+
+  void prescribe(const Element& e, FebBody& body, int k, const FebValue& value) {
+    FebFreedom& freedom = body.freedoms[static_cast<std::size_t>(k)];
+    if (freedom.kind == Freedom::prescribed)
+      file_.xml.fault(e, format("a freedom of {} is prescribed twice", quote(body.material)),
+                      "Keep one of them.");
+    // FEBio lets what is prescribed override what is fixed.
+    freedom = {Freedom::prescribed, value, &e};
+  }
+
+  /// A ramp over the analysis up to a value, as an expression.
+  SourceNode ramp(const Element& e, double value) const {
+    const NodeBuilder make = file_.make(e);
+    SourceNode table = make.map(), points = make.list();
+    points.children.push_back(make.list({make.number(0.0), make.number(0.0)}));
+    points.children.push_back(make.list({make.number(model_.duration), make.number(value)}));
+    make.put(table, "table", std::move(points));
+    return table;
+  }
+
+  void read_component(const Element& e, const std::string& name, bool turn) {
+    const FebBody* body = model_.body(e, "rb");
+    const int k = dof(e, turn);
+    const FebValue value = file_.value(e, "value");
+    const std::string kind = lower_case(file_.text(e, "load_type"));
+    const bool follows = kind == "1" || kind == "follow" || kind == "follower";
+    const bool target = kind == "2" || kind == "target";
+    if (!kind.empty() && kind != "0" && kind != "load" && kind != "direct" && !follows && !target)
+      file_.xml.fault(e, format("<load_type> is {}", quote(kind)), "Write 0, 1 or 2.");
+    if (body == nullptr || k < 0) return;
+    const NodeBuilder make = file_.make(e);
+    SourceNode load = make.map(), components = make.list();
+    for (int j = 0; j < 3; ++j)
+      components.children.push_back(k % 3 != j ? make.number(0.0)
+                                    : target   ? ramp(e, value.factor)
+                                               : model_.curves.node(value));
+    make.put(load, "type", make.text(turn ? "moment" : "force"));
+    make.put(load, "body", make.text(body->name));
+    make.put(load, turn ? "moment" : "force", std::move(components));
+    if (follows) make.put(load, "body_fixed", make.boolean(true));
+    put_load(e, name, *body, std::move(load));
+  }
+
+  void read_follower(const Element& e, const std::string& name, bool turn) {
+    const FebBody* body = model_.body(e, "rb");
+    const auto values = file_.vector_value(e, turn ? "moment" : "force");
+    const Vec3 at = file_.vector(e, "insertion").value_or(Vec3::Zero());
+    if (body == nullptr) return;
+    const NodeBuilder make = file_.make(e);
+    SourceNode load = make.map();
+    make.put(load, "type", make.text(turn ? "moment" : "force"));
+    make.put(load, "body", make.text(body->name));
+    if (!turn) {
+      const bool relative = file_.boolean(e, "relative", false);
+      make.put(load, "at", make.vector(relative ? Vec3(body->com + at) : at));
+    }
+    make.put(load, turn ? "moment" : "force", model_.vector(e, values));
+    make.put(load, "body_fixed", make.boolean(true));
+    put_load(e, name, *body, std::move(load));
+  }
+
+  void put_load(const Element& e, const std::string& name, const FebBody& body, SourceNode load) {
+    if (body.is_fixed())
+      file_.ignored.add(e, format("<{}> on a fixed body", e.Name()), "moves nothing");
+    else
+      model_.add_load(e, name, std::move(load));
+  }
+
+  void read_axial(const Element& e, const std::string& name) {
+    const FebBody *a = model_.body(e, "rbA"), *b = model_.body(e, "rbB");
+    const Vec3 ra = file_.vector(e, "ra").value_or(Vec3::Zero());
+    const Vec3 rb = file_.vector(e, "rb").value_or(Vec3::Zero());
+    const bool relative = file_.boolean(e, "relative", false);
+    const FebValue force = file_.value(e, "force");
+    if (a == nullptr || b == nullptr) return;
+    const NodeBuilder make = file_.make(e);
+    SourceNode load = make.map();
+    make.put(load, "type", make.text("axial_force"));
+    make.put(load, "bodies", make.list({make.text(a->name), make.text(b->name)}));
+    make.put(load, "at",
+             make.list({make.vector(relative ? Vec3(a->com + ra) : ra),
+                        make.vector(relative ? Vec3(b->com + rb) : rb)}));
+    make.put(load, "pull", model_.curves.node(force));
+    model_.add_load(e, name, std::move(load));
+  }
+
+  FebModel& model_;
+  FebFile& file_;
+};
+
+}  // namespace
+
+void read_feb_rigid(FebModel& model, const Element& section) {
+  RigidReader reader(model);
+  for (const Element* e : model.file.xml.children(section, "rigid_bc")) reader.read_constraint(*e);
+  for (const Element* e : model.file.xml.children(section, "rigid_ic")) reader.read_start(*e);
+  for (const Element* e : model.file.xml.children(section, "rigid_load")) reader.read_load(*e);
+  for (const Element* e : model.file.xml.children(section, "rigid_connector"))
+    read_feb_connector(model, *e);
+  for (const char* tag : {"rigid_bc", "rigid_ic"})
+    for (const Element* e : model.file.xml.children(section, tag))
+      model.file.ignored.attributes(*e, {"name"});
+}
+
+}  // namespace polhode::io
