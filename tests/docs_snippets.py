@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Runs the models and commands of the quick starts unchanged, compares what README and the tour show with what the program prints,
-and checks every complete model of the other pages.
+the errors that README states with those of docs/validation.md, and checks every complete model of the other pages.
 
 Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
 after the other in one folder, and what its consoles show is what the program prints. docs_tutorials.py runs the pages of docs/tutorials
@@ -17,6 +17,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 POLHODE = os.environ.get("POLHODE", str(ROOT / "build/release/apps/polhode/polhode"))
+ROUND_OFF = r"(?:\d\.\d+e-(?:1[4-9]|[2-9]\d)|0\.0e\+00)"
 BLOCK = re.compile(r"Save this as `(?P<file>[\w.]+)`|^```(?P<language>\w*)\n(?P<text>.*?)^```$", re.M | re.S)
 
 
@@ -53,8 +54,8 @@ def run_page(page, folder):
 
 
 def same_output(printed, shown):
-    """Whether the lines shown are those printed, in order, digit by digit; `...` stands for any lines. Only the name of the
-    instruction set, the last word of its line, depends on the machine."""
+    """Whether the lines shown are those printed, in order, digit by digit; `...` stands for any lines. What depends on the processor
+    are the name of the instruction set, the last word of its line, and round-off: a number below 1e-13 stands for any such number."""
     pattern = []
     for line in shown:
         words = line.split()
@@ -64,7 +65,7 @@ def same_output(printed, shown):
         if words[:2] == ["solver", "tree"]:
             pattern.append(r"solver tree(?: \w+)?\n")
             continue
-        pattern.append(re.escape(" ".join(words)) + "\n")
+        pattern.append(" ".join(ROUND_OFF if re.fullmatch(ROUND_OFF, word) else re.escape(word) for word in words) + "\n")
     return re.fullmatch("".join(pattern), "".join(" ".join(line.split()) + "\n" for line in printed)) is not None
 
 
@@ -87,6 +88,25 @@ def compare_consoles(page, count):
             if drift and float(drift[1]) > 1e-13:
                 faults.append(f"{page}: the drift is not of round-off, and '{command}' prints {drift[1]}")
     return faults + ([] if len(consoles) == count else [f"{page} has {len(consoles)} consoles"])
+
+
+def compare_errors():
+    """Faults of README's table of errors: rows whose step, error and peer are not in one row of the same case of docs/validation.md."""
+    measured, case = [], ""
+    for line in (ROOT / "docs/validation.md").read_text().split("## Published cases")[1].split("\n\\*")[0].splitlines():
+        cells = [cell.strip().removesuffix(" \\*") for cell in line.split("|")[1:-1]]
+        if len(cells) == 9:
+            if cells[0] and not cells[0].startswith("N ="):
+                case = cells[0]
+            count = cells[0] if cells[0].startswith("N =") else count if not cells[0] else ""
+            measured.append((f"{case}, {count}", cells[3], cells[5], cells[6]))
+    rows = re.findall(r"^\| ([^|]*) \| ([\d.]+ [µm]s) \| (\S+) \w+ \| (\S+) \w+ \| \d[^|]* \|$", (ROOT / "README.md").read_text(), re.M)
+    faults = [] if len(rows) >= 6 else [f"README.md: its table of errors has {len(rows)} rows"]
+    for name, *numbers in rows:
+        words = [part.strip() for part in name.split("(")[0].split(",") if not re.fullmatch(r" *[\d.]+ s *", part)]
+        if not any(list(found) == numbers and all(word in of for word in words) for of, *found in measured):
+            faults.append(f"README.md: docs/validation.md has no row of '{name}' with {', '.join(numbers)}")
+    return faults
 
 
 def check_models(page):
@@ -124,6 +144,7 @@ def main(wanted):
     for page, count in (("README.md", 1), ("docs/tour.md", 4)):
         if not wanted or pathlib.Path(page).stem in wanted:
             problems += compare_consoles(page, count)
+    problems += compare_errors()
     others = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     checked = 0
     for page in others:

@@ -107,10 +107,23 @@ def test_script_and_sweep_of_the_book(tutorials: Any, tmp_path: pathlib.Path, mo
     assert len(energies) > 10000 and np.abs(energies - 0.07).max() < 1e-12
 
 
-def test_the_four_bar_of_the_readme_runs(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_four_bar_of_the_readme_prints_what_it_shows(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch,
+                                                         capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     own = [s for s in SNIPPET.findall((ROOT / "README.md").read_text()) if "import polhode" in s]
-    assert len(own) == 1 and len(own[0].splitlines()) <= 14
+    assert len(own) == 1 and len(own[0].splitlines()) <= 10
+    shown = re.search(r"^print.*# (.*)$", own[0], re.M)
+    assert shown
     names = execute(own, ROOT / "README.md")
+    number = re.compile(r"\d+\.(?:\d+)?(?:e-\d+)?")
+    *place, drift = map(float, number.findall(shown[1]))
+    *printed, round_off = map(float, number.findall(capsys.readouterr().out))
+    assert place == printed and len(place) == 3
+    assert drift < 1e-14 and round_off < 1e-13
     assert (tmp_path / "four_bar.png").stat().st_size > 10000
-    assert names["r"].ledger.energy_drift < 1e-12
+    # At a hundredth of the step the coupler ends within a millimetre of it.
+    import polhode
+
+    fine = polhode.run(names["m"], overrides={"analysis.step": "50 us"}, progress=False)
+    assert fine.bodies["coupler"].position[-1] == pytest.approx(place, abs=1e-3)
+    assert fine.ledger.energy_drift < 1e-12
