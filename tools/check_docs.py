@@ -6,6 +6,8 @@
 * The target of every link from a page to a file of the repository exists.
 * The C++ program of the tour is that of tests/consumer, which is built and run against the installed library.
 * No file under src/ has more than 500 lines; above 300 there is a notice.
+* The newest section of the changelog, the version of CMake and the files that the page install names agree, and notes of changes have names
+  with their day, not before that section's, and a title.
 """
 import pathlib
 import re
@@ -115,8 +117,25 @@ def check_program(problems):
         problems.append("docs/tour.md: its C++ program is not that of tests/consumer/main.cpp. Copy it from there.")
 
 
+def check_release(problems, root=ROOT):
+    version = re.search(r"^project\(polhode VERSION (\S+)", (root / "CMakeLists.txt").read_text(), re.M)[1]
+    sections = re.findall(r"^## (\S+) \((\d{4}-\d{2}-\d{2})\)$", (root / "CHANGELOG.md").read_text(), re.M)
+    if not sections or sections[0][0] != version:
+        problems.append(f"CHANGELOG.md: its newest section is not '## {version} (date)', the version of CMakeLists.txt.")
+    page = (root / "docs/how_to/install.md").read_text()
+    for other in sorted(set(re.findall(r"polhode(?:-dev)?[-_](\d+\.\d+\.\d+)", page)) - {version}):
+        problems.append(f"docs/how_to/install.md: names files of version {other}, but the version is {version}.")
+    for note in sorted(set((root / "changes").iterdir()) - {root / "changes/README.md"}):
+        day = re.fullmatch(r"(\d{8})-[\w-]+\.md", note.name)
+        if day is None or not note.read_text().startswith("# "):
+            problems.append(f"changes/{note.name}: a note is YYYYMMDD-words.md and begins with a title '# ...'.")
+        elif sections and day[1] < sections[0][1].replace("-", ""):
+            problems.append(f"changes/{note.name}: is older than version {sections[0][0]}. Add it to CHANGELOG.md, and remove it.")
+
+
 def main():
     problems = []
+    check_release(problems)
     check_program(problems)
     check_kinds(problems)
     check_pages(problems)

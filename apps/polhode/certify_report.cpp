@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/io/results/csv_probes.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/study/certificate_picture.hpp>
@@ -162,7 +163,7 @@ Json certificate_json(const Certificate& c, int code, const std::string& folder)
           {"trusted", c.trusted()}, {"refines", c.automatic ? "tolerance" : "step"},
           {"orders", c.orders},     {"notes", c.notes},
           {"runs", runs},           {"quantities", quantities},
-          {"results", folder},      {"version", POLHODE_VERSION}};
+          {"results", folder},      {"version", version()}};
 }
 
 void write_files(const Certificate& c, const std::string& folder, const Json& json) {

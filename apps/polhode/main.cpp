@@ -8,6 +8,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/io/text/diagnostics.hpp>
 #include <polhode/io/text/file_error.hpp>
 
@@ -46,7 +47,7 @@ std::string sentence(std::string text) {
 int main_program(int argc, char** argv) {
   CLI::App app("Polhode: dynamics of mechanisms, exact where physics is exact.", "polhode");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "polhode " POLHODE_VERSION);
+  app.set_version_flag("--version", std::string("polhode ") + version());
   app.footer("Start with:  polhode examples n_four_bar > model.yaml && polhode run model.yaml");
   std::vector<std::pair<CLI::App*, Action>> actions;
   for (const Command& command : commands()) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/io/read/read_import.hpp>
 #include <polhode/io/results/summary_json.hpp>
 #include <polhode/io/text/file_error.hpp>
@@ -31,7 +32,7 @@ std::string end_name(int exit_code) {
 
 io::Provenance provenance_of(const ModelArguments& model, const RunSummary& summary) {
   io::ExpandedModel source = io::expanded_model(model.file, model.overrides);
-  return {.version = POLHODE_VERSION,
+  return {.version = version(),
           .solver = summary.solver,
           .instruction_set = summary.instruction_set,
           .model_file = std::filesystem::path(model.file).filename().string(),

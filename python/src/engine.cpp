@@ -7,6 +7,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/results/summary_json.hpp>
 #include <polhode/loads/registry.hpp>
@@ -74,7 +75,7 @@ std::string Engine::run(Recording* recording, const std::string& folder,
     const RunSummary s = simulation_->summary();
     file.emplace(
         *simulation_, folder,
-        io::Provenance{.version = POLHODE_VERSION,
+        io::Provenance{.version = version(),
                        .solver = s.solver,
                        .instruction_set = s.instruction_set,
                        .model_file = std::filesystem::path(model().source_file).filename().string(),

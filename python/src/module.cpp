@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/version.hpp>
+
 #include "parts.hpp"
 
 NB_MODULE(_native, m) {
   m.doc() = "Engine of the package polhode. Use that package.";
-  m.attr("version") = POLHODE_VERSION;
+  m.attr("version") = polhode::version();
   polhode::python::bind_errors(m);
   polhode::python::bind_model(m);
   polhode::python::bind_held_loads(m);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/kernels/dispatch.hpp>
@@ -101,7 +102,7 @@ Finding guarded(const char* what, Examination examine) {
 
 int doctor() {
   const std::vector<Finding> findings{
-      {"version", "polhode " POLHODE_VERSION},
+      {"version", std::string("polhode ") + version()},
       {"compiler", __VERSION__},
       {"libraries", format("Eigen {}.{}.{}, fmt {}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                            EIGEN_MINOR_VERSION, FMT_VERSION)},

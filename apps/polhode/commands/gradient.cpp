@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/io/read/gradient_parameter.hpp>
 
@@ -92,7 +93,7 @@ GradientJson gradient_json(const GradientRequest& request, const RunGradient& ru
           {"gradient_time_s", run.gradient_seconds},
           {"warnings", doubts},
           {"outcomes", outcomes},
-          {"version", POLHODE_VERSION}};
+          {"version", version()}};
 }
 
 int show_gradient(GradientOptions& options) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/io/read/read_import.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/results/write_campbell.hpp>
@@ -92,7 +93,7 @@ std::string modes_json(const ModalAnalysis& analysis, int code, const std::strin
 
 io::Provenance provenance_of(const ModelArguments& arguments) {
   io::ExpandedModel source = io::expanded_model(arguments.file, arguments.overrides);
-  return {.version = POLHODE_VERSION,
+  return {.version = version(),
           .solver = "mumps",
           .model_file = std::filesystem::path(arguments.file).filename().string(),
           .model_text = std::move(source.text),

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/core/clock.hpp>
+#include <polhode/core/version.hpp>
 #include <polhode/model/endless.hpp>
 #include <polhode/simulation/finite_functions.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
@@ -197,7 +198,7 @@ RunSummary Simulation::summary() const {
   r.result_hash = state_hash();
   r.solver = s.engine_name;
   r.instruction_set = s.method.kernels->name;
-  r.version = POLHODE_VERSION;
+  r.version = version();
   r.order = s.method.control.order;
   r.scheme = s.method.scheme;
   r.narration = s.narration;

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <utility>
 
+#include <polhode/core/version.hpp>
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/io/schema/schema.hpp>
 #include <support/paths.hpp>
@@ -23,6 +26,29 @@ TEST(Schema, NamesEveryFieldWithItsMeaning) {
     for (const io::Field& field : table->fields) {
       EXPECT_NE(schema.find("\"" + field.name + "\""), std::string::npos) << table->title;
       EXPECT_FALSE(field.meaning.empty()) << table->title << " " << field.name;
+    }
+  }
+}
+
+/// Release by release, so that "0.10" comes after "0.9".
+std::pair<int, int> version_of(const std::string& text) {
+  const std::size_t dot = text.find('.');
+  return {std::stoi(text.substr(0, dot)), std::stoi(text.substr(dot + 1))};
+}
+
+TEST(Schema, NamesTheVersionsOfEveryField) {
+  const auto [major, minor] = version_of(version());
+  const std::pair<int, int> next(major, minor + 1);
+  const std::string page = io::reference_markdown();
+  for (const io::FieldTable* table : io::all_field_tables()) {
+    for (const io::Field& field : table->fields) {
+      SCOPED_TRACE(table->title + " " + field.name);
+      EXPECT_LE(version_of(field.since), next);
+      if (field.changed.empty()) continue;
+      EXPECT_LT(version_of(field.since), version_of(field.changed));
+      EXPECT_LE(version_of(field.changed), next);
+      EXPECT_NE(page.find("| " + field.since + ", changed in " + field.changed + " |"),
+                std::string::npos);
     }
   }
 }

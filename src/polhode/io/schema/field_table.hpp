@@ -87,7 +87,8 @@ struct Field {
   SpecMember member{};
   /// Field with another value of which a run may be continued: not part of the fingerprint.
   bool may_change = false;
-  std::string since = "0.1";
+  std::string since = "0.1";  ///< Version that reads the key first.
+  std::string changed{};      ///< Last version in which the key got another meaning or default.
 };
 
 /// The keys of one kind of object.

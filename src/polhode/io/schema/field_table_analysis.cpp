@@ -42,7 +42,8 @@ const FieldTable& analysis_fields() {
            .standard = "1e-6 without step",
            .range = {1e-14, 0.1},
            .member = &AnalysisSpec::tolerance,
-           .may_change = true},
+           .may_change = true,
+           .changed = "0.2"},
           {.name = "rho_inf",
            .kind = kNumber,
            .meaning = "Spectral radius at infinity: 1 conserves energy, 0 damps the highest "
@@ -57,7 +58,8 @@ const FieldTable& analysis_fields() {
            .standard = "2, or chosen by the tolerance; 6 by extrapolation with a step",
            .choices = {"2", "4", "6", "8", "10", "12"},
            .member = &AnalysisSpec::order,
-           .may_change = true},
+           .may_change = true,
+           .changed = "0.2"},
           {.name = "method",
            .kind = kChoice,
            .meaning = "How orders above 2 are reached: composition conserves energy exactly but "

@@ -118,6 +118,11 @@ std::string cell(std::string text) {
   return text;
 }
 
+std::string versions(const Field& field) {
+  return field.changed.empty() ? field.since
+                               : format("{}, changed in {}", field.since, field.changed);
+}
+
 std::string table_page(const FieldTable& table) {
   std::string page = format("## {}\n\n{}\n\n", table.title, table.meaning);
   page += "| key | value | SI unit | range | when left out | meaning | since |\n";
@@ -126,7 +131,7 @@ std::string table_page(const FieldTable& table) {
     const std::string left_out = field.required ? "**required**" : field.standard;
     page += format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.name, cell(form(field)),
                    field.dimension.si_unit(), bounds(field.range), cell(left_out),
-                   cell(field.meaning), field.since);
+                   cell(field.meaning), versions(field));
   }
   return page + "\n";
 }
@@ -170,7 +175,10 @@ std::string reference_markdown() {
       "Directions are `x`, `y`, `z`, `-x`, `-y`, `-z`, or three numbers of any length but zero. "
       "Names consist of letters, digits, `_` and `-`.\n\n"
       "On the command line `--set L=1.2` sets a variable and `--set joints.A.at.0=0.1` any entry; "
-      "list entries count from 0.\n\n";
+      "list entries count from 0.\n\n"
+      "The last column of a table names the version that reads a key first, and the last one in "
+      "which its meaning or what is taken when it is left out has changed. 0.1 is the version "
+      "before the first release.\n\n";
   for (const FieldTable* table : all_field_tables()) page += table_page(*table);
   page += "## sizes of shapes\n\nFull lengths, in this order or by name.\n\n";
   page += "| shape | sizes |\n| --- | --- |\n";
