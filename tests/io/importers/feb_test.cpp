@@ -349,9 +349,6 @@ TEST_F(Feb, WhatIsNotReadIsSaid) {
     return fault(two_bodies(control(), "", section));
   };
   EXPECT_THAT(says(tag("Contact", tag("contact", ""))), HasSubstr("<Contact> is not read"));
-  EXPECT_THAT(says(tag("Boundary", tag("bc", ""))), HasSubstr("<Boundary> is not read"));
-  EXPECT_THAT(says(tag("Loads", typed("surface_load", "pressure", ""))),
-              HasSubstr("<surface_load> is not read"));
   EXPECT_THAT(notes(two_bodies(control(), "", tag("Contact", tag("contact", ""))),
                     {"import.allow_partial=true"}),
               HasSubstr("left out: <Contact> is not read"));

@@ -37,19 +37,23 @@ class FebReader {
     for (const Element* e : sections("LoadData")) model_.curves.read(*e, model_.duration);
     model_.mesh = read_feb_mesh(file_, file_.child(root, "Mesh"), file_.child(root, "MeshDomains"));
     if (const Element* materials = file_.child(root, "Material"))
-      read_feb_bodies(model_, *materials);
+      read_feb_materials(model_, *materials);
+    model_.solids.assemble();
+    for (const Element* e : sections("Boundary")) model_.solids.read_boundary(*e);
     for (const Element* e : sections("Rigid")) read_feb_rigid(model_, *e);
     for (const Element* e : sections("Loads")) read_feb_loads(model_, *e);
     refuse_others();
     make.put(result, "format", make.text("1"));
     if (!model_.gravity.isZero(0.0)) make.put(result, "gravity", make.vector(model_.gravity));
     make.put(result, "bodies", write_feb_bodies(model_));
+    model_.solids.write(result);
     if (!model_.joints.keys.empty()) make.put(result, "joints", std::move(model_.joints));
     if (!model_.loads.keys.empty()) make.put(result, "loads", std::move(model_.loads));
     write_feb_control(model_, *control, result);
     file_.ignored.add_unread();
-    if (model_.bodies.empty())
-      file_.xml.fault(root, "the file has no rigid body", "Add a material of type \"rigid body\".");
+    if (model_.bodies.empty() && model_.solids.empty())
+      file_.xml.fault(root, "the file has no rigid body and no solid",
+                      "Add a material and a mesh.");
     return result;
   }
 
@@ -107,8 +111,8 @@ class FebReader {
   }
 
   void refuse_others() {
-    for (const char* name : {"Boundary", "Contact", "Constraints", "Discrete", "Initial",
-                             "MeshAdaptor", "MeshData", "Code", "Include"})
+    for (const char* name : {"Contact", "Constraints", "Discrete", "Initial", "MeshAdaptor",
+                             "MeshData", "Code", "Include"})
       for (const Element* e : sections(name)) {
         if (e->FirstChildElement() == nullptr && XmlFile::content(*e).value_or("").empty())
           continue;

@@ -95,13 +95,15 @@ void read_body(FebModel& model, const Element& e, std::set<std::string>& taken) 
   model.bodies.push_back(std::move(body));
 }
 
-/// Whether a body's rotation is prescribed as a whole.
+/// Whether a body's rotation is prescribed as a whole, or fixed while it is moved.
 bool turns_as_prescribed(const FebBody& body) {
   const auto count = [&](Freedom kind) {
     return std::count_if(body.freedoms.begin() + 3, body.freedoms.end(),
                          [&](const FebFreedom& f) { return f.kind == kind; });
   };
-  return count(Freedom::free) == 0 && count(Freedom::prescribed) > 0;
+  const bool moved = std::any_of(body.freedoms.begin(), body.freedoms.end(),
+                                 [](const FebFreedom& f) { return f.kind == Freedom::prescribed; });
+  return count(Freedom::free) == 0 && moved;
 }
 
 /// Freedoms of a body as `fixed`, `hold` and `motion`.
@@ -149,7 +151,23 @@ void put_freedoms(FebModel& model, const FebBody& body, const NodeBuilder& make,
       make.put(motion, "rotation_vector", model.vector(*body.at, {value(3), value(4), value(5)}));
     }
   }
-  if (!hold.children.empty()) make.put(node, "hold", std::move(hold));
+  if (!motion.keys.empty() && !hold.children.empty()) {
+    // A body has one of both: rotations are held by a joint of their own.
+    SourceNode joint = make.map(), free = make.list();
+    for (const char* name : names)
+      if (std::none_of(hold.children.begin(), hold.children.end(),
+                       [&](const SourceNode& held) { return held.text == name; }))
+        free.children.push_back(make.text(name));
+    make.put(joint, "type", make.text("generic"));
+    make.put(joint, "bodies", make.list({make.text("ground"), make.text(body.name)}));
+    make.put(joint, "at", make.vector(body.com));
+    make.put(joint, "axis", make.text("z"));
+    make.put(joint, "x_axis", make.text("x"));
+    make.put(joint, "free", std::move(free));
+    model.add_joint(*body.at, body.name + "_hold", std::move(joint));
+  } else if (!hold.children.empty()) {
+    make.put(node, "hold", std::move(hold));
+  }
   if (!motion.keys.empty()) make.put(node, "motion", std::move(motion));
 }
 
@@ -194,17 +212,14 @@ bool FebBody::is_centred() const {
   return (com - mesh.com).norm() <= kSamePoint * radius;
 }
 
-void read_feb_bodies(FebModel& model, const Element& section) {
+void read_feb_materials(FebModel& model, const Element& section) {
   std::set<std::string> taken{"ground"};
   for (const Element* e : model.file.xml.children(section, "material")) {
     const std::string type = model.file.type(*e);
     if (type == "rigid body")
       read_body(model, *e, taken);
     else if (!type.empty())
-      model.file.refuse(*e,
-                        format("the material {} of type {} is not read",
-                               quote(model.file.xml.text(*e, "name").value_or("")), quote(type)),
-                        "Only rigid bodies are.");
+      model.solids.read_material(*e, type);
   }
 }
 

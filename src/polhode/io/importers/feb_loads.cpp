@@ -51,9 +51,12 @@ void read_feb_loads(FebModel& model, const Element& section) {
                   "Use a body force, or add a load to the model.");
     }
   }
-  for (const char* tag : {"nodal_load", "surface_load", "edge_load"})
-    for (const Element* e : file.xml.children(section, tag))
-      file.refuse(*e, format("<{}> is not read", tag), "Use rigid loads.");
+  for (const Element* e : file.xml.children(section, "nodal_load"))
+    model.solids.read_nodal_load(*e);
+  for (const Element* e : file.xml.children(section, "surface_load"))
+    model.solids.read_surface_load(*e);
+  for (const Element* e : file.xml.children(section, "edge_load"))
+    file.refuse(*e, "<edge_load> is not read", "Use nodal loads.");
   bool plain = std::all_of(model.bodies.begin(), model.bodies.end(), [](const FebBody& b) {
     return b.is_fixed() || (b.mesh.mass > 0.0 && b.is_centred());
   });
@@ -62,6 +65,7 @@ void read_feb_loads(FebModel& model, const Element& section) {
   for (const BodyForce& force : forces) {
     if (!plain) {
       add_weights(model, force);
+      model.solids.add_body_force(*force.at, force.values);
       continue;
     }
     for (int k = 0; k < 3; ++k)

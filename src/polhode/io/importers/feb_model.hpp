@@ -9,6 +9,7 @@
 #include <polhode/io/importers/feb_curves.hpp>
 #include <polhode/io/importers/feb_file.hpp>
 #include <polhode/io/importers/feb_mesh.hpp>
+#include <polhode/io/importers/feb_solids.hpp>
 
 namespace polhode::io {
 
@@ -42,12 +43,15 @@ struct FebBody {
 
 /// All that is read of an FEBio file, and the parts of the model that come from it.
 struct FebModel {
-  explicit FebModel(FebFile& f) : file(f), curves(f) {}
+  explicit FebModel(FebFile& f) : file(f), curves(f), solids(*this) {}
+  FebModel(const FebModel&) = delete;
+  FebModel& operator=(const FebModel&) = delete;
 
   FebFile& file;
   FebCurves curves;
   FebMesh mesh;
   std::vector<FebBody> bodies;
+  FebSolids solids;
   bool dynamic = false;
   double duration = 0.0;
   Vec3 gravity = Vec3::Zero();
@@ -64,8 +68,8 @@ struct FebModel {
                     double factor = 1.0);
 };
 
-/// Reads materials of rigid bodies, with the mass of their parts of the mesh.
-void read_feb_bodies(FebModel& model, const XmlFile::Element& section);
+/// Reads materials: rigid bodies with the mass of their parts of the mesh, and those of solids.
+void read_feb_materials(FebModel& model, const XmlFile::Element& section);
 /// Bodies of a model file.
 [[nodiscard]] SourceNode write_feb_bodies(FebModel& model);
 /// Reads <Rigid>.

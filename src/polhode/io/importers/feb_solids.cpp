@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/feb_solids.hpp>
+
+#include <algorithm>
+
+#include <polhode/core/disjoint_sets.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/importers/feb_model.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+
+namespace polhode::io {
+
+namespace {
+
+using Element = XmlFile::Element;
+
+/// Cells of a solid with the numbers of its own nodes.
+std::vector<std::vector<int>> cells_of(const FebSolid& solid) {
+  std::vector<std::vector<int>> cells;
+  for (const FebPart* part : solid.parts)
+    for (std::size_t e = 0; e < part->nodes.size(); e += static_cast<std::size_t>(part->size)) {
+      std::vector<int> cell;
+      for (int k = 0; k < part->size; ++k)
+        cell.push_back(solid.place.at(part->nodes[e + static_cast<std::size_t>(k)]));
+      cells.push_back(std::move(cell));
+    }
+  return cells;
+}
+
+}  // namespace
+
+void FebSolids::assemble() {
+  FebFile& file = model_.file;
+  std::vector<const FebPart*> parts;
+  for (const FebPart& part : model_.mesh.parts) {
+    if (!materials_.contains(part.material)) continue;
+    if (part.shape.empty() || !part.is_solid())
+      file.refuse(*part.at, format("{} elements of a deformable solid are not read", part.type),
+                  "Mesh the part with hex8, hex20, hex27, tet4, tet10 or penta6.");
+    else if (!part.nodes.empty())
+      parts.push_back(&part);
+  }
+  DisjointSets sets(parts.size());
+  std::unordered_map<int, int> owner;
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p)
+    for (const int n : parts[static_cast<std::size_t>(p)]->nodes) {
+      const auto [found, is_new] = owner.try_emplace(n, p);
+      const FebPart& other = *parts[static_cast<std::size_t>(found->second)];
+      const FebPart& part = *parts[static_cast<std::size_t>(p)];
+      if (is_new || found->second == p) continue;
+      if (other.material == part.material) {
+        sets.join(found->second, p);
+        continue;
+      }
+      file.refuse(*part.at,
+                  format("the parts {} and {} share nodes, but have two materials",
+                         quote(other.name), quote(part.name)),
+                  "Give them one material, or a rigid body between them.");
+      found->second = p;
+    }
+  std::map<int, std::size_t> solid_of;
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
+    const FebPart& part = *parts[static_cast<std::size_t>(p)];
+    const auto [found, is_new] = solid_of.try_emplace(sets.first_of(p), solids_.size());
+    if (is_new) {
+      FebSolid solid;
+      solid.name = file.name(*part.at, part.name, solid_names_);
+      solid.material = materials_.at(part.material).name;
+      solid.at = part.at;
+      if (part.shape == "hex8")
+        solid.element = materials_.at(part.material).uncoupled ? "hex8_q1p0" : "hex8_standard";
+      solids_.push_back(std::move(solid));
+    }
+    FebSolid& solid = solids_[found->second];
+    if (solid.parts.empty() || solid.parts.front()->shape == part.shape) {
+      solid.parts.push_back(&part);
+      solid.nodes.insert(solid.nodes.end(), part.nodes.begin(), part.nodes.end());
+      continue;
+    }
+    if (!solid.element.empty() || part.shape == "hex8")
+      file.approximated(*part.at,
+                        format("the hexahedra of {} have enhanced strains if the material "
+                               "is compressible, as its elements are of several kinds",
+                               quote(solid.name)));
+    solid.element.clear();
+    solid.parts.push_back(&part);
+    solid.nodes.insert(solid.nodes.end(), part.nodes.begin(), part.nodes.end());
+  }
+  for (FebSolid& solid : solids_) {
+    std::sort(solid.nodes.begin(), solid.nodes.end());
+    solid.nodes.erase(std::unique(solid.nodes.begin(), solid.nodes.end()), solid.nodes.end());
+    std::vector<Vec3> X;
+    for (const int n : solid.nodes) {
+      solid.place.emplace(n, static_cast<int>(X.size()));
+      X.push_back(model_.mesh.nodes[static_cast<std::size_t>(n)]);
+    }
+    try {
+      solid.boundary = solids::boundary(solids::inline_mesh(solid.name, X, cells_of(solid), {}));
+    } catch (const InputError& error) {
+      file.xml.fault(*solid.at, error.what_is_wrong(), "Mend the mesh.");
+    }
+  }
+  for (const FebBody& body : model_.bodies)
+    for (const int n : body.nodes) attached_.emplace(n, body.name);
+}
+
+SourceNode FebSolids::node_list(const NodeBuilder& make, const FebSolid& solid,
+                                const std::vector<int>& nodes) const {
+  SourceNode list = make.list(), selection = make.map();
+  for (const int n : nodes) list.children.push_back(make.text(format("{}", solid.place.at(n))));
+  make.put(selection, "nodes", std::move(list));
+  return selection;
+}
+
+void FebSolids::put_bonds(const FebSolid& solid, const NodeBuilder& make, SourceNode& node) {
+  std::map<std::string, std::vector<int>> bonds;
+  // Nodes by condition and by the components that it holds, as bits.
+  std::map<std::pair<int, int>, std::vector<int>> groups;
+  bool both = false;
+  for (const int n : solid.nodes) {
+    const auto body = attached_.find(n);
+    const auto held = held_.find(n);
+    if (body != attached_.end()) {
+      bonds[body->second].push_back(n);
+      both = both || held != held_.end();
+      continue;
+    }
+    if (held == held_.end()) continue;
+    std::map<int, int> components;
+    for (int k = 0; k < 3; ++k)
+      if (const int h = held->second[static_cast<std::size_t>(k)]; h >= 0) components[h] |= 1 << k;
+    for (const auto& [h, bits] : components) groups[{h, bits}].push_back(n);
+  }
+  if (both)
+    model_.file.ignored.add(*solid.at, "a displacement of nodes of a rigid body",
+                            "is given by the body");
+  SourceNode bonded = make.map(), prescribed = make.map();
+  for (const auto& [body, nodes] : bonds) make.put(bonded, body, node_list(make, solid, nodes));
+  static const char* const names[] = {"x", "y", "z"};
+  std::set<std::string> taken;
+  for (const auto& [key, nodes] : groups) {
+    const FebHold& hold = holds_[static_cast<std::size_t>(key.first)];
+    SourceNode entry = make.map();
+    make.put(entry, "nodes", node_list(make, solid, nodes));
+    for (std::size_t k = 0; k < 3; ++k)
+      if ((key.second >> k & 1) != 0) make.put(entry, names[k], model_.curves.node(hold.values[k]));
+    std::string name = hold.name;
+    for (int k = 2; !taken.insert(name).second; ++k) name = format("{}_{}", hold.name, k);
+    make.put(prescribed, name, std::move(entry));
+  }
+  if (!bonded.keys.empty()) make.put(node, "bonded", std::move(bonded));
+  if (!prescribed.keys.empty()) make.put(node, "prescribed", std::move(prescribed));
+}
+
+SourceNode FebSolids::write_solid(const FebSolid& solid) {
+  const NodeBuilder make = model_.file.make(*solid.at);
+  SourceNode node = make.map(), mesh = make.map(), nodes = make.list(), elements = make.list();
+  for (const int n : solid.nodes)
+    nodes.children.push_back(make.vector(model_.mesh.nodes[static_cast<std::size_t>(n)]));
+  for (const std::vector<int>& cell : cells_of(solid)) {
+    SourceNode list = make.list();
+    for (const int n : cell) list.children.push_back(make.text(format("{}", n)));
+    elements.children.push_back(std::move(list));
+  }
+  make.put(mesh, "nodes", std::move(nodes));
+  make.put(mesh, "elements", std::move(elements));
+  make.put(node, "mesh", std::move(mesh));
+  if (!solid.element.empty()) make.put(node, "element", make.text(solid.element));
+  make.put(node, "material", make.text(solid.material));
+  put_bonds(solid, make, node);
+  return node;
+}
+
+void FebSolids::write(SourceNode& root) {
+  if (solids_.empty()) return;
+  const NodeBuilder make = model_.file.make(model_.file.xml.root());
+  SourceNode materials = make.map(), solids = make.map();
+  for (auto& [name, material] : materials_)
+    make.put(materials, material.name, std::move(material.node));
+  for (const FebSolid& solid : solids_) make.put(solids, solid.name, write_solid(solid));
+  make.put(root, "materials", std::move(materials));
+  make.put(root, "solids", std::move(solids));
+}
+
+}  // namespace polhode::io

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <polhode/io/importers/feb_file.hpp>
+#include <polhode/io/importers/feb_mesh.hpp>
+#include <polhode/solids/mesh/mesh.hpp>
+
+namespace polhode::io {
+
+struct FebModel;
+
+/// A deformable solid: connected parts of the mesh with one material.
+struct FebSolid {
+  std::string name;      ///< In the model: that of its first part.
+  std::string material;  ///< In the model.
+  const XmlFile::Element* at = nullptr;
+  std::vector<const FebPart*> parts;
+  std::vector<int> nodes;              ///< Places in FebMesh::nodes, ascending.
+  std::unordered_map<int, int> place;  ///< Number in the solid by place in FebMesh::nodes.
+  std::string element;                 ///< Kind of element; "": chosen by the cells.
+  solids::Surface boundary;            ///< With numbers of the solid's nodes.
+};
+
+/// A material of deformable solids.
+struct FebMaterial {
+  std::string name;  ///< In the model.
+  bool uncoupled = false;
+  SourceNode node;
+};
+
+/// A boundary condition on displacements.
+struct FebHold {
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  bool prescribed = false;         ///< Else fixed.
+  std::array<FebValue, 3> values;  ///< By component.
+};
+
+/// The deformable solids of a file.
+class FebSolids {
+ public:
+  explicit FebSolids(FebModel& model) : model_(model) {}
+
+  /// Reads a material; one of an unknown type is refused.
+  void read_material(const XmlFile::Element& e, const std::string& type);
+  /// Makes solids of the parts that have one of these materials.
+  void assemble();
+  /// Reads <Boundary>.
+  void read_boundary(const XmlFile::Element& section);
+  /// Reads a <nodal_load>.
+  void read_nodal_load(const XmlFile::Element& e);
+  /// Reads a <surface_load>.
+  void read_surface_load(const XmlFile::Element& e);
+  /// Adds a force on all mass, in proportion to a body force of FEBio.
+  void add_body_force(const XmlFile::Element& e, const std::array<FebValue, 3>& values);
+  /// Adds `materials` and `solids`.
+  void write(SourceNode& root);
+  [[nodiscard]] bool empty() const { return solids_.empty(); }
+
+ private:
+  SourceNode node_list(const NodeBuilder& make, const FebSolid& solid,
+                       const std::vector<int>& nodes) const;
+  SourceNode write_solid(const FebSolid& solid);
+  void put_bonds(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
+  bool put_isotropic(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
+  bool put_fibre(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
+  /// Nodes of a set that a tag names, also "@surface:name"; nothing after an error.
+  const std::vector<int>* named_nodes(const XmlFile::Element& e);
+  /// Lets a boundary condition hold a component of nodes.
+  void hold(const std::vector<int>& nodes, int component, int hold);
+  /// Faces of a solid as a selection; an error if the facets are not on its boundary.
+  /// @param sign  -1 if the facets face inward.
+  bool select(const XmlFile::Element& e, const FebSolid& solid,
+              const std::vector<std::vector<int>>& facets, SourceNode& selection, double& sign);
+  void put_surface_load(const XmlFile::Element& e, const std::string& type, const FebSolid& solid,
+                        SourceNode selection, double sign);
+
+  FebModel& model_;
+  std::map<std::string, FebMaterial> materials_;  ///< By name in the file.
+  std::set<std::string> material_names_, solid_names_, hold_names_;
+  std::vector<FebSolid> solids_;
+  std::vector<FebHold> holds_;
+  std::map<int, std::array<int, 3>> held_;  ///< Number of the condition by node and component.
+  std::map<int, std::string> attached_;     ///< Body to which a node is attached, by node.
+  std::map<std::string, std::vector<int>> surface_nodes_;
+};
+
+}  // namespace polhode::io
