@@ -356,6 +356,13 @@ TEST_F(FebSolidsCli, WhatIsNotReadIsSaid) {
                                   "<c1>1</c1><k>100</k><fiber type='local'>1,2</fiber>"),
                          kSymmetry)),
               HasSubstr("only fibres of type \"vector\" are read"));
+  // Fibres may be given without a tag of their own.
+  write("cube.feb",
+        file("hex8",
+             material("trans iso Mooney-Rivlin",
+                      "<c1>1</c1><k>100</k><c3>1</c3><c4>2</c4><fiber type='vector'>1,2,0</fiber>"),
+             kSymmetry));
+  EXPECT_EQ(run({"check", "cube.feb"}).code, 0);
 }
 
 }  // namespace

@@ -90,7 +90,8 @@ std::string FebFile::type(const Element& e) { return lower_case(xml.required_tex
 
 std::optional<std::vector<double>> FebFile::numbers(const Element& e, std::size_t least,
                                                     std::size_t most) {
-  if (const auto given = xml.text(e, "type"); given && lower_case(*given) != "const") {
+  if (const auto given = xml.text(e, "type");
+      given && lower_case(*given) != "const" && lower_case(*given) != "vector") {
     refuse(e, format("<{}> is a function of type {}", e.Name(), quote(*given)),
            "Give numbers, with a load controller for their course over time.");
     return std::nullopt;
