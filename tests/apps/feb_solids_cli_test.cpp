@@ -332,6 +332,27 @@ TEST_F(FebSolidsCli, ARigidMassOscillatesOnABar) {
   }
 }
 
+// Without forces a cube keeps the velocity of its nodes.
+TEST_F(FebSolidsCli, SolidsStartWithTheirVelocity) {
+  std::string text = file("hex8", kElastic, "");
+  const std::string from = "<analysis>STATIC</analysis>";
+  text.replace(text.find(from), from.size(), "<analysis>DYNAMIC</analysis>");
+  const std::string end = "<Boundary></Boundary>";
+  const auto moving = [&](const std::string& set) {
+    std::string moved = text;
+    return moved.replace(
+        moved.find(end), end.size(),
+        "<Initial><ic type='velocity' node_set='" + set + "'><value>0,2,0</value></ic></Initial>");
+  };
+  std::string all = moving("all");
+  const std::string sets = "<NodeSet name='x0'>";
+  all.replace(all.find(sets), sets.size(), "<NodeSet name='all'>1:8</NodeSet>" + sets);
+  const auto row = last(all, "{solid: cube, point: [0, 0, 0]}");
+  EXPECT_NEAR(row.at(1), 2.0, 1e-9);
+  write("cube.feb", moving("x0"));
+  EXPECT_THAT(run({"check", "cube.feb"}).err, HasSubstr("a part of 'cube' alone has a velocity"));
+}
+
 TEST_F(FebSolidsCli, WhatIsNotReadIsSaid) {
   const auto fault = [&](const std::string& text) {
     write("cube.feb", text);

@@ -163,6 +163,49 @@ TEST_F(FebConnectors, ContractileForcesPullTheBodiesTogether) {
   EXPECT_NEAR(run(m, 1.0).body("bar").r.z(), 16 / kMass / 2, 1e-9);
 }
 
+/// The block on a spring below a corner, between nodes of rigid bodies, with a speed along z.
+std::string on_a_spring(const std::string& law, double speed) {
+  return feb(control() +
+             tag("Material", rigid(1, "base", tag("center_of_mass", "0,0,0")) + rigid(2, "bar")) +
+             tag("Mesh", block(1, "part", Vec3(-0.5, -0.1, -0.2), Vec3(0.5, 0.1, 0.2)) +
+                             tag("Nodes", tag("node", "-0.5,-0.1,-1.2", "id='101'")) +
+                             tag("NodeSet", "101", "name='anchor'") +
+                             tag("DiscreteSet", tag("delem", "101,1"), "name='ligament'")) +
+             tag("MeshDomains", domain("part", "bar")) +
+             tag("Boundary", tag("bc", tag("rb", "base"), "type='rigid' node_set='anchor'")) +
+             tag("Rigid", fixed("base", "111111") + fixed("bar", "110111") +
+                              typed("rigid_ic", "initial_rigid_velocity",
+                                    tag("rb", "bar") + tag("value", format("0,0,{}", speed)))) +
+             tag("Discrete", law + "<discrete dmat='1' discrete_set='ligament'/>"));
+}
+
+// A length of 1 m without force: z = v/w sin(w t), and a slack ligament does not act.
+TEST_F(FebConnectors, SpringsBetweenNodesOfRigidBodies) {
+  const auto law = [](const std::string& type, const std::string& inside) {
+    return tag("discrete_material", inside, "id='1' type='" + type + "'");
+  };
+  const std::string points = tag("force",
+                                 tag("interpolate", "linear") + tag("extend", "extrapolate") +
+                                     tag("points", tag("pt", "-0.01,-5") + tag("pt", "0.01,5")),
+                                 "type='point'");
+  const double w = std::sqrt(500 / kMass), t = 0.4;
+  for (const std::string& spring :
+       {law("linear spring", tag("E", "500")), law("nonlinear spring", points)})
+    for (const double step : kSteps)
+      EXPECT_NEAR(run(read(on_a_spring(spring, 0.3)), t, step).body("bar").r.z(),
+                  0.3 / w * std::sin(w * t), error_at(step));
+  const std::string ligament = law("tension-only linear spring", tag("E", "500"));
+  EXPECT_NEAR(run(read(on_a_spring(ligament, 0.3)), t, 1e-3).body("bar").r.z(),
+              0.3 / w * std::sin(w * t), error_at(1e-3));
+  EXPECT_NEAR(run(read(on_a_spring(ligament, -0.3)), t, 1e-3).body("bar").r.z(), -0.3 * t, 1e-9);
+  EXPECT_THAT(fault(on_a_spring(law("Hill", ""), 0)),
+              HasSubstr("springs of type 'hill' are not read"));
+  EXPECT_THAT(fault(on_a_spring(law("nonlinear spring", ""), 0)), HasSubstr("no <force> of type"));
+  std::string loose = on_a_spring(ligament, 0);
+  loose.replace(loose.find("type='rigid' node_set"), 21, "type='fluid' node_set");
+  EXPECT_THAT(fault(loose), HasSubstr("an end that is on no rigid body"));
+}
+
 // A crank of 0.2 m turned at 2 rad/s, a rod of 0.5 m and a slider along x.
 TEST_F(FebConnectors, ASliderCrankMovesAsItsGeometrySays) {
   const auto bar = [&](int first, const std::string& name, double from, double to) {

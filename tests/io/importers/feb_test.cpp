@@ -344,6 +344,31 @@ TEST_F(Feb, SectionsOfTheOnlyStepCount) {
               HasSubstr("the file has 2 steps"));
 }
 
+TEST_F(Feb, RequestsForTheLogFileBecomeProbes) {
+  const auto request = [](const std::string& kind, const std::string& data,
+                          const std::string& items) {
+    return tag(kind, items, "data='" + data + "' file='log.txt'");
+  };
+  const std::string text = two_bodies(
+      control(), connector("rigid revolute joint", tag("rotation_axis", "0,1,0")),
+      tag("Output", tag("plotfile", "", "type='febio'") +
+                        tag("logfile", request("rigid_body_data", "x;y;z;qx;qy;qz;qw;omx", "2") +
+                                           request("rigid_connector_data", "RCFx", "") +
+                                           request("node_data", "ux", "7") +
+                                           request("element_data", "sx", "1"))));
+  const Model m = read(text);
+  ASSERT_EQ(m.output.probes.size(), 3u);
+  EXPECT_EQ(m.output.probes[0].name, "bar");
+  EXPECT_EQ(m.output.probes[1].name, "link");
+  EXPECT_EQ(m.output.probes[2].name, "node_7");
+  const std::string said = notes(text);
+  EXPECT_THAT(said, HasSubstr("requests for the log file become probes"));
+  EXPECT_THAT(said, HasSubstr("<element_data> of the log file is not recorded"));
+  EXPECT_THAT(fault(two_bodies(control(), "",
+                               tag("Output", tag("logfile", request("node_data", "x", "70"))))),
+              HasSubstr("there is no node 70"));
+}
+
 TEST_F(Feb, WhatIsNotReadIsSaid) {
   const auto says = [&](const std::string& section) {
     return fault(two_bodies(control(), "", section));

@@ -42,6 +42,10 @@ class FebReader {
     for (const Element* e : sections("Boundary")) model_.solids.read_boundary(*e);
     for (const Element* e : sections("Rigid")) read_feb_rigid(model_, *e);
     for (const Element* e : sections("Loads")) read_feb_loads(model_, *e);
+    for (const Element* e : sections("Discrete")) model_.solids.read_discrete(*e);
+    for (const Element* e : sections("Initial")) model_.solids.read_initial(*e);
+    SourceNode probes = make.map();
+    for (const Element* e : sections("Output")) read_feb_output(model_, *e, probes);
     refuse_others();
     make.put(result, "format", make.text("1"));
     if (!model_.gravity.isZero(0.0)) make.put(result, "gravity", make.vector(model_.gravity));
@@ -49,7 +53,7 @@ class FebReader {
     model_.solids.write(result);
     if (!model_.joints.keys.empty()) make.put(result, "joints", std::move(model_.joints));
     if (!model_.loads.keys.empty()) make.put(result, "loads", std::move(model_.loads));
-    write_feb_control(model_, *control, result);
+    write_feb_control(model_, *control, std::move(probes), result);
     file_.ignored.add_unread();
     if (model_.bodies.empty() && model_.solids.empty())
       file_.xml.fault(root, "the file has no rigid body and no solid",
@@ -111,15 +115,15 @@ class FebReader {
   }
 
   void refuse_others() {
-    for (const char* name : {"Contact", "Constraints", "Discrete", "Initial", "MeshAdaptor",
-                             "MeshData", "Code", "Include"})
+    for (const char* name :
+         {"Contact", "Constraints", "MeshAdaptor", "MeshData", "Code", "Include"})
       for (const Element* e : sections(name)) {
         if (e->FirstChildElement() == nullptr && XmlFile::content(*e).value_or("").empty())
           continue;
         file_.refuse(*e, format("<{}> is not read", name), "Leave it out.");
       }
     const Element& root = file_.xml.root();
-    file_.ignored.skip(root, {"Globals", "Output"});
+    file_.ignored.skip(root, {"Globals"});
   }
 
   FebModel& model_;

@@ -332,6 +332,15 @@ class ConnectorReader {
 
 }  // namespace
 
-void read_feb_connector(FebModel& model, const Element& e) { ConnectorReader(model, e).read(); }
+void read_feb_connector(FebModel& model, const Element& e) {
+  const std::size_t joints = model.joints.keys.size(), loads = model.loads.keys.size();
+  ConnectorReader(model, e).read();
+  if (model.joints.keys.size() > joints)
+    model.connectors.emplace_back("joint", model.joints.keys[joints].name);
+  else if (model.loads.keys.size() > loads)
+    model.connectors.emplace_back("load", model.loads.keys[loads].name);
+  else
+    model.connectors.emplace_back("", "");
+}
 
 }  // namespace polhode::io

@@ -78,7 +78,8 @@ void read_feb_control(FebModel& model, const Element& section) {
   }
 }
 
-void write_feb_control(FebModel& model, const Element& section, SourceNode& root) {
+void write_feb_control(FebModel& model, const Element& section, SourceNode probes,
+                       SourceNode& root) {
   FebFile& file = model.file;
   const NodeBuilder make = file.make(section);
   const double step = file.number(section, "step_size").value_or(1.0);
@@ -121,6 +122,7 @@ void write_feb_control(FebModel& model, const Element& section, SourceNode& root
   for (const Element* e : file.children(section)) file.xml.skip(*e);
   make.put(root, "analysis", std::move(analysis));
   if (every > 0.0) make.put(output, "every", make.number(every));
+  if (!probes.keys.empty()) make.put(output, "probes", std::move(probes));
   if (!output.keys.empty()) make.put(root, "output", std::move(output));
 }
 

@@ -57,6 +57,8 @@ struct FebModel {
   Vec3 gravity = Vec3::Zero();
   SourceNode joints, loads;
   std::set<std::string> joint_names, load_names;
+  /// Of each connector "joint" or "load", and its name; "" if it became none.
+  std::vector<std::pair<std::string, std::string>> connectors;
 
   /// Body of a tag that has its name or the number of its material; null after an error.
   FebBody* body(const XmlFile::Element& parent, const char* tag);
@@ -78,9 +80,13 @@ void read_feb_rigid(FebModel& model, const XmlFile::Element& section);
 void read_feb_connector(FebModel& model, const XmlFile::Element& e);
 /// Reads <Loads>.
 void read_feb_loads(FebModel& model, const XmlFile::Element& section);
+/// Reads requests for the log file as probes.
+void read_feb_output(FebModel& model, const XmlFile::Element& section, SourceNode& probes);
 /// Reads <Control>: whether the analysis is dynamic, and its length.
 void read_feb_control(FebModel& model, const XmlFile::Element& section);
 /// Analysis and output of a model file; after the load curves.
-void write_feb_control(FebModel& model, const XmlFile::Element& section, SourceNode& root);
+/// @param probes  Without keys: none.
+void write_feb_control(FebModel& model, const XmlFile::Element& section, SourceNode probes,
+                       SourceNode& root);
 
 }  // namespace polhode::io

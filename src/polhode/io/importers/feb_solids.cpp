@@ -169,6 +169,9 @@ SourceNode FebSolids::write_solid(const FebSolid& solid) {
   make.put(node, "mesh", std::move(mesh));
   if (!solid.element.empty()) make.put(node, "element", make.text(solid.element));
   make.put(node, "material", make.text(solid.material));
+  // Left out, it would move with the first body to which it is bonded.
+  if (model_.dynamic)
+    make.put(node, "velocity", make.vector(solid.velocity.value_or(Vec3::Zero())));
   put_bonds(solid, make, node);
   return node;
 }

@@ -23,6 +23,7 @@ struct FebSolid {
   std::vector<const FebPart*> parts;
   std::vector<int> nodes;              ///< Places in FebMesh::nodes, ascending.
   std::unordered_map<int, int> place;  ///< Number in the solid by place in FebMesh::nodes.
+  std::optional<Vec3> velocity;        ///< At the start [m/s].
   std::string element;                 ///< Kind of element; "": chosen by the cells.
   solids::Surface boundary;            ///< With numbers of the solid's nodes.
 };
@@ -53,6 +54,10 @@ class FebSolids {
   void assemble();
   /// Reads <Boundary>.
   void read_boundary(const XmlFile::Element& section);
+  /// Reads <Discrete>: springs between nodes.
+  void read_discrete(const XmlFile::Element& section);
+  /// Reads <Initial>.
+  void read_initial(const XmlFile::Element& section);
   /// Reads a <nodal_load>.
   void read_nodal_load(const XmlFile::Element& e);
   /// Reads a <surface_load>.
@@ -61,6 +66,10 @@ class FebSolids {
   void add_body_force(const XmlFile::Element& e, const std::array<FebValue, 3>& values);
   /// Adds `materials` and `solids`.
   void write(SourceNode& root);
+  /// Nodes of a set that a tag names, also "@surface:name"; null after an error.
+  const std::vector<int>* named_nodes(const XmlFile::Element& e);
+  /// Adds to a probe the solid or the body of a node. @returns whether it has one.
+  bool put_node(int node, const NodeBuilder& make, SourceNode& probe) const;
   [[nodiscard]] bool empty() const { return solids_.empty(); }
 
  private:
@@ -70,8 +79,8 @@ class FebSolids {
   void put_bonds(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
   bool put_isotropic(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
   bool put_fibre(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
-  /// Nodes of a set that a tag names, also "@surface:name"; nothing after an error.
-  const std::vector<int>* named_nodes(const XmlFile::Element& e);
+  /// Body of a node, or the ground of a fixed one; "" if it has neither.
+  [[nodiscard]] std::string holder(int node) const;
   /// Lets a boundary condition hold a component of nodes.
   void hold(const std::vector<int>& nodes, int component, int hold);
   /// Faces of a solid as a selection; an error if the facets are not on its boundary.
