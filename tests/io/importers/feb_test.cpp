@@ -373,10 +373,11 @@ TEST_F(Feb, WhatIsNotReadIsSaid) {
   const auto says = [&](const std::string& section) {
     return fault(two_bodies(control(), "", section));
   };
-  EXPECT_THAT(says(tag("Contact", tag("contact", ""))), HasSubstr("<Contact> is not read"));
-  EXPECT_THAT(notes(two_bodies(control(), "", tag("Contact", tag("contact", ""))),
+  EXPECT_THAT(says(tag("Constraints", tag("constraint", ""))),
+              HasSubstr("<Constraints> is not read"));
+  EXPECT_THAT(notes(two_bodies(control(), "", tag("Constraints", tag("constraint", ""))),
                     {"import.allow_partial=true"}),
-              HasSubstr("left out: <Contact> is not read"));
+              HasSubstr("left out: <Constraints> is not read"));
   EXPECT_THAT(notes(two_bodies(control(), "", tag("Odd", ""))),
               HasSubstr("<Odd> in <febio_spec> is unknown"));
   EXPECT_THAT(fault(two_bodies(control(), typed("rigid_load", "rigid_cable", ""))),

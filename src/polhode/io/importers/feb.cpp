@@ -46,6 +46,7 @@ class FebReader {
     for (const Element* e : sections("Initial")) model_.solids.read_initial(*e);
     SourceNode probes = make.map();
     for (const Element* e : sections("Output")) read_feb_output(model_, *e, probes);
+    for (const Element* e : sections("Contact")) model_.solids.read_contact(*e);
     refuse_others();
     make.put(result, "format", make.text("1"));
     if (!model_.gravity.isZero(0.0)) make.put(result, "gravity", make.vector(model_.gravity));
@@ -115,8 +116,7 @@ class FebReader {
   }
 
   void refuse_others() {
-    for (const char* name :
-         {"Contact", "Constraints", "MeshAdaptor", "MeshData", "Code", "Include"})
+    for (const char* name : {"Constraints", "MeshAdaptor", "MeshData", "Code", "Include"})
       for (const Element* e : sections(name)) {
         if (e->FirstChildElement() == nullptr && XmlFile::content(*e).value_or("").empty())
           continue;

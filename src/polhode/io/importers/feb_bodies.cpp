@@ -50,6 +50,7 @@ void integrate(FebModel& model, FebBody& body, double density) {
   std::sort(body.nodes.begin(), body.nodes.end());
   body.nodes.erase(std::unique(body.nodes.begin(), body.nodes.end()), body.nodes.end());
   if (!parts.empty()) body.mesh = geometry::composed(parts);
+  if (density > 0.0) body.volume = body.mesh.mass / density;
 }
 
 void read_body(FebModel& model, const Element& e, std::set<std::string>& taken) {
@@ -252,6 +253,7 @@ SourceNode write_feb_bodies(FebModel& model) {
     if (body.velocity && !at_rest) make.put(node, "velocity", make.vector(*body.velocity));
     if (body.spin && !at_rest) make.put(node, "angular_velocity", make.vector(*body.spin));
     put_shape(model, body, make, node);
+    model.solids.put_contact(body, make, node);
     make.put(bodies, body.name, std::move(node));
   }
   return bodies;

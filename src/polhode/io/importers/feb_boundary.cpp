@@ -71,6 +71,9 @@ void FebSolids::hold(const std::vector<int>& nodes, int component, int hold) {
 
 void FebSolids::read_boundary(const Element& section) {
   FebFile& file = model_.file;
+  // The interfaces of a solid with bodies have the bodies' names.
+  hold_names_.insert("ground");
+  for (const FebBody& body : model_.bodies) hold_names_.insert(body.name);
   for (const Element* e : file.xml.children(section, "bc")) {
     const std::string type = file.type(*e);
     const std::string name = file.xml.text(*e, "name").value_or("");

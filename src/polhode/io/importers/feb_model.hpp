@@ -33,7 +33,9 @@ struct FebBody {
   std::array<FebFreedom, 6> freedoms;
   bool euler = false;  ///< The rotations are angles about fixed axes x, y, z [deg].
   std::optional<Vec3> velocity, spin;
-  std::vector<int> nodes;  ///< Of its elements.
+  std::vector<int> nodes;               ///< Of its elements, ascending.
+  double volume = 0.0;                  ///< Of its elements [m³].
+  std::set<std::string> groups, meets;  ///< Of contact; none: it does not touch.
 
   [[nodiscard]] bool is_fixed() const;
   [[nodiscard]] bool can_move() const;  ///< Whether a freedom is free.

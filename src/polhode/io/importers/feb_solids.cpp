@@ -173,18 +173,24 @@ SourceNode FebSolids::write_solid(const FebSolid& solid) {
   if (model_.dynamic)
     make.put(node, "velocity", make.vector(solid.velocity.value_or(Vec3::Zero())));
   put_bonds(solid, make, node);
+  put_contact(solid, make, node);
   return node;
 }
 
 void FebSolids::write(SourceNode& root) {
-  if (solids_.empty()) return;
   const NodeBuilder make = model_.file.make(model_.file.xml.root());
   SourceNode materials = make.map(), solids = make.map();
   for (auto& [name, material] : materials_)
     make.put(materials, material.name, std::move(material.node));
   for (const FebSolid& solid : solids_) make.put(solids, solid.name, write_solid(solid));
-  make.put(root, "materials", std::move(materials));
-  make.put(root, "solids", std::move(solids));
+  if (!solids_.empty()) {
+    make.put(root, "materials", std::move(materials));
+    make.put(root, "solids", std::move(solids));
+  }
+  if (contacts_.kind != SourceNode::Kind::kMap) return;
+  SourceNode contacts = make.map();
+  make.put(contacts, "pairs", std::move(contacts_));
+  make.put(root, "contacts", std::move(contacts));
 }
 
 }  // namespace polhode::io

@@ -14,6 +14,7 @@
 namespace polhode::io {
 
 struct FebModel;
+struct FebBody;
 
 /// A deformable solid: connected parts of the mesh with one material.
 struct FebSolid {
@@ -21,11 +22,13 @@ struct FebSolid {
   std::string material;  ///< In the model.
   const XmlFile::Element* at = nullptr;
   std::vector<const FebPart*> parts;
-  std::vector<int> nodes;              ///< Places in FebMesh::nodes, ascending.
-  std::unordered_map<int, int> place;  ///< Number in the solid by place in FebMesh::nodes.
-  std::optional<Vec3> velocity;        ///< At the start [m/s].
-  std::string element;                 ///< Kind of element; "": chosen by the cells.
-  solids::Surface boundary;            ///< With numbers of the solid's nodes.
+  std::vector<int> nodes;                  ///< Places in FebMesh::nodes, ascending.
+  std::unordered_map<int, int> place;      ///< Number in the solid by place in FebMesh::nodes.
+  std::optional<Vec3> velocity;            ///< At the start [m/s].
+  std::vector<std::vector<int>> touching;  ///< Facets that may touch others.
+  std::set<std::string> groups, meets;     ///< Of contact; none: it does not touch.
+  std::string element;                     ///< Kind of element; "": chosen by the cells.
+  solids::Surface boundary;                ///< With numbers of the solid's nodes.
 };
 
 /// A material of deformable solids.
@@ -58,6 +61,10 @@ class FebSolids {
   void read_discrete(const XmlFile::Element& section);
   /// Reads <Initial>.
   void read_initial(const XmlFile::Element& section);
+  /// Reads <Contact>.
+  void read_contact(const XmlFile::Element& section);
+  /// Adds to a body how it touches.
+  void put_contact(const FebBody& body, const NodeBuilder& make, SourceNode& node) const;
   /// Reads a <nodal_load>.
   void read_nodal_load(const XmlFile::Element& e);
   /// Reads a <surface_load>.
@@ -75,6 +82,17 @@ class FebSolids {
  private:
   SourceNode node_list(const NodeBuilder& make, const FebSolid& solid,
                        const std::vector<int>& nodes) const;
+  /// A surface that touches another one: of a solid or of a rigid body.
+  struct Side {
+    const std::vector<std::vector<int>>* facets = nullptr;
+    FebSolid* solid = nullptr;
+    FebBody* body = nullptr;
+  };
+  Side side_of(const std::string& surface);
+  void tie(const XmlFile::Element& e, const Side& a, const Side& b);
+  void touch(const XmlFile::Element& e, const Side& side, const std::string& own,
+             const std::string& other);
+  void put_contact(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
   SourceNode write_solid(const FebSolid& solid);
   void put_bonds(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
   bool put_isotropic(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
@@ -98,6 +116,8 @@ class FebSolids {
   std::map<int, std::array<int, 3>> held_;  ///< Number of the condition by node and component.
   std::map<int, std::string> attached_;     ///< Body to which a node is attached, by node.
   std::map<std::string, std::vector<int>> surface_nodes_;
+  std::set<std::string> contact_names_;
+  SourceNode contacts_;  ///< Laws of pairs; a map if there are any.
 };
 
 }  // namespace polhode::io
