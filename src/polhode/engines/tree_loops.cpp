@@ -11,7 +11,8 @@ namespace {
 /// Builder of the plan; the maps are needed only while planning.
 class Planner {
  public:
-  explicit Planner(const System& system) : system_(system), tree_(system.tree()) {
+  Planner(const System& system, bool coupled)
+      : system_(system), tree_(system.tree()), coupled_(coupled) {
     parent_.assign(tree_.slots, -1);
     for (int b = 0; b < system.body_count(); ++b)
       if (tree_.link[b].parent != kGround) parent_[slot(b)] = slot(tree_.link[b].parent);
@@ -48,7 +49,7 @@ class Planner {
       if (s >= 0 && plan_.extra_of_slot[s] < 0) plan_.extra_of_slot[s] = plan_.extra_count++;
     int unknowns = ref.further_part ? 0 : x.rows;
     x.further_part = ref.further_part;
-    const Coupling coupling = system_.traits(ref).coupling;
+    const Coupling coupling = coupled_ ? system_.traits(ref).coupling : Coupling::none;
     x.rotations_only = coupling != Coupling::all;
     if (x.slot_a >= 0 && x.slot_b >= 0 && coupling != Coupling::none) {
       const bool b_is_child = parent_[x.slot_b] == x.slot_a;
@@ -254,6 +255,7 @@ class Planner {
 
   const System& system_;
   const SpanningTree& tree_;
+  bool coupled_;
   TreeLoopPlan plan_;
   std::vector<int> parent_, depth_;
   std::vector<std::set<int>> ends_;                   ///< By loop: slots of its bodies.
@@ -263,6 +265,8 @@ class Planner {
 
 }  // namespace
 
-TreeLoopPlan plan_tree_loops(const System& system) { return Planner(system).plan(); }
+TreeLoopPlan plan_tree_loops(const System& system, bool coupled) {
+  return Planner(system, coupled).plan();
+}
 
 }  // namespace polhode

@@ -59,6 +59,8 @@ struct TreeLoopPlan {
   double flops = 0.0;  ///< Floating-point operations of one elimination.
 };
 
-[[nodiscard]] TreeLoopPlan plan_tree_loops(const System& system);
+/// @param coupled  Forces on one body of an interaction depend on the motion of the other, as in
+/// the tangent of a step; false at an instant, where only rows couple them.
+[[nodiscard]] TreeLoopPlan plan_tree_loops(const System& system, bool coupled = true);
 
 }  // namespace polhode

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/assert.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/kernels/dispatch.hpp>
+#include <polhode/kernels/instant_data.hpp>
 
 namespace polhode {
 
 extern const LaneKernels kBaselineKernels;
+extern const InstantKernels kBaselineInstantKernels;
 #if defined(__x86_64__)
 extern const LaneKernels kAvx2Kernels;
 extern const LaneKernels kAvx512Kernels;
+extern const InstantKernels kAvx2InstantKernels;
+extern const InstantKernels kAvx512InstantKernels;
 #endif
 
 namespace {
@@ -40,6 +45,15 @@ const LaneKernels& lane_kernels(const std::string& wanted) {
   }
   throw InputError("analysis.isa", format("'{}' is not available on this machine", wanted),
                    format("Use automatic, or one of: {}", names));
+}
+
+const InstantKernels& instant_kernels(const LaneKernels& kernels) {
+#if defined(__x86_64__)
+  if (&kernels == &kAvx512Kernels) return kAvx512InstantKernels;
+  if (&kernels == &kAvx2Kernels) return kAvx2InstantKernels;
+#endif
+  POLHODE_ASSERT(&kernels == &kBaselineKernels);
+  return kBaselineInstantKernels;
 }
 
 std::vector<std::string> available_instruction_sets() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <polhode/kernels/elimination.hpp>
+#include <polhode/kernels/instant_solve.hpp>
 
 namespace polhode::POLHODE_ISA {
 

@@ -7,6 +7,8 @@
 
 namespace polhode {
 extern const LaneKernels kAvx2Kernels;
+extern const InstantKernels kAvx2InstantKernels;
 constinit const LaneKernels kAvx2Kernels = lanes_avx2::make_kernels("avx2");
+constinit const InstantKernels kAvx2InstantKernels = lanes_avx2::make_instant_kernels();
 }  // namespace polhode
 #endif

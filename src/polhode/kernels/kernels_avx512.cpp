@@ -7,6 +7,8 @@
 
 namespace polhode {
 extern const LaneKernels kAvx512Kernels;
+extern const InstantKernels kAvx512InstantKernels;
 constinit const LaneKernels kAvx512Kernels = lanes_avx512::make_kernels("avx512");
+constinit const InstantKernels kAvx512InstantKernels = lanes_avx512::make_instant_kernels();
 }  // namespace polhode
 #endif

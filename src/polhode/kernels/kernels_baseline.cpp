@@ -6,5 +6,7 @@
 
 namespace polhode {
 extern const LaneKernels kBaselineKernels;
+extern const InstantKernels kBaselineInstantKernels;
 constinit const LaneKernels kBaselineKernels = lanes_baseline::make_kernels("baseline");
+constinit const InstantKernels kBaselineInstantKernels = lanes_baseline::make_instant_kernels();
 }  // namespace polhode

@@ -24,11 +24,13 @@
 #include <polhode/simulation/held_values.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/probe.hpp>
+#include <polhode/simulation/seen_bodies.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
 #include <polhode/stepping/extrapolated_velocities.hpp>
+#include <polhode/stepping/instant_tree.hpp>
 #include <polhode/stepping/step_lengths.hpp>
 
 namespace polhode {
@@ -65,12 +67,15 @@ struct Simulation::Impl {
   std::string
       pole;  ///< Names a function of time without bounds in the last run(), if there is one.
   double start_seconds = 0.0, output_seconds = 0.0;
-  double last_work = 1.0;  ///< Wall time of the last single step [s].
+  double advance_seconds = 0.0;  ///< In advance(): phases of the stepper, and all between them.
+  double last_work = 1.0;        ///< Wall time of the last single step [s].
   // Instantaneous results, computed once per state.
+  std::unique_ptr<InstantTree> instant_tree;  ///< Of systems that solve_along_tree() takes.
   std::unique_ptr<InstantSolver> instant_solver;
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0, which is reported.
   std::int64_t instant_step = -1;
+  SeenBodies seen_bodies;  ///< Of `projected`.
   /// Largest |G v| at output times, its time [s], and the largest magnitudes of its terms.
   double velocity_residual = 0.0, velocity_time = 0.0, velocity_scale = 0.0;
   /// Smallest of surfaces of solids after any step [m].
@@ -443,40 +448,25 @@ struct Simulation::Impl {
                            "contacts.overlaps: resolve");
   }
 
+  /// An interaction at the present instant.
+  PairStep seen(const InteractionRef& ref) {
+    const InstantSolution& now = at_instant();
+    return seen_bodies.step(system, projected, ref, now.lambda);
+  }
+
+  /// Velocities on G v = 0, accelerations and multipliers at the present instant, computed when
+  /// they are first asked for.
   const InstantSolution& at_instant() {
     if (held && held->now != reported_held) {
       reported_held = held->now;
       instant_step = -1;
     }
-    if (instant_step == state.ledger.steps) return instant;
-    if (statics) {
-      projected = state;
-      instant.r_ddot.assign(system.body_count(), Vec3::Zero());
-      instant.alpha.assign(system.body_count(), Vec3::Zero());
-      instant.lambda = state.lambda;
-      instant.node_force = statics->newton().node_residual();
-      instant_step = state.ledger.steps;
-      return instant;
-    }
-    if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
-    projected = state;
-    const VelocityReport v = instant_solver->project_velocities(projected);
-    figures.velocity_constraint_residual_max =
-        std::max(figures.velocity_constraint_residual_max, v.residual_before);
-    velocity_scale = std::max(velocity_scale, v.scale);
-    // Those of the start are projected, or belong to drives that contradict each other.
-    if (state.ledger.steps > 0 &&
-        v.residual_before > std::max(velocity_residual, rounding_of_velocities())) {
-      velocity_residual = v.residual_before;
-      velocity_time = state.t;
-    }
-    std::vector<double> node_v = extrapolated_velocities(system, projected);
-    projected.node_v.swap(node_v);
-    instant = instant_solver->accelerations(projected, contacts.wrenches());
-    projected.node_v.swap(node_v);
-    instant_step = state.ledger.steps;
+    if (instant_step != state.ledger.steps) compute_instant();
     return instant;
   }
+  void compute_instant();
+  InstantSolver& solver_at_instant();
+  bool solve_along_tree(VelocityReport& velocities);
 };
 
 }  // namespace polhode

@@ -37,6 +37,56 @@ std::vector<double> slide_report(const System& system, State projected, const In
 
 }  // namespace
 
+InstantSolver& Simulation::Impl::solver_at_instant() {
+  if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
+  return *instant_solver;
+}
+
+/// Projects velocities and computes accelerations along the tree where the steps are solved so.
+/// @returns false if it does not take the system, or cannot: then it is for solver_at_instant().
+bool Simulation::Impl::solve_along_tree(VelocityReport& velocities) {
+  if (!instant_tree) {
+    if (engine_name != "tree" || !InstantTree::takes(system)) return false;
+    instant_tree = std::make_unique<InstantTree>(system, *method.kernels);
+  }
+  if (instant_tree->solve(projected, contacts.wrenches(), velocities, instant)) return true;
+  projected = state;
+  return false;
+}
+
+void Simulation::Impl::compute_instant() {
+  seen_bodies.begin(system, state.t);
+  if (statics) {
+    projected = state;
+    instant.r_ddot.assign(system.body_count(), Vec3::Zero());
+    instant.alpha.assign(system.body_count(), Vec3::Zero());
+    instant.lambda = state.lambda;
+    instant.node_force = statics->newton().node_residual();
+    instant_step = state.ledger.steps;
+    return;
+  }
+  projected = state;
+  VelocityReport v;
+  const bool solved = solve_along_tree(v);
+  if (!solved) v = solver_at_instant().project_velocities(projected);
+  figures.velocity_constraint_residual_max =
+      std::max(figures.velocity_constraint_residual_max, v.residual_before);
+  velocity_scale = std::max(velocity_scale, v.scale);
+  // Those of the start are projected, or belong to drives that contradict each other.
+  if (state.ledger.steps > 0 &&
+      v.residual_before > std::max(velocity_residual, rounding_of_velocities())) {
+    velocity_residual = v.residual_before;
+    velocity_time = state.t;
+  }
+  if (!solved) {
+    std::vector<double> node_v = extrapolated_velocities(system, projected);
+    projected.node_v.swap(node_v);
+    instant = solver_at_instant().accelerations(projected, contacts.wrenches());
+    projected.node_v.swap(node_v);
+  }
+  instant_step = state.ledger.steps;
+}
+
 BodyMotion Simulation::body(int body) const {
   const int index = impl_->map.body[body];
   if (index != kGround) {
@@ -71,9 +121,7 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   const System& system = impl_->system;
   const int interaction = impl_->map.joint[joint];
   const InteractionRef& ref = system.interactions()[interaction];
-  const InstantSolution& now = impl_->at_instant();
-  const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
-  const PairStep step = view.step();
+  const PairStep step = impl_->seen(ref);
   const Joint& item = joint_at(system, interaction);
   const JointCoordinates free = item.coordinates(step);
   const Reaction reaction = item.reaction(step, joint_axes);
@@ -113,9 +161,8 @@ std::vector<double> Simulation::load(int load) const {
   if (acts_on_beam(load_kind(model().loads[load].type)))
     return slide_report(system, impl_->projected, now, model().loads[load].name);
   const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
-  const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   const LoadKind& kind = load_kind(model().loads[load].type);
-  std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
+  std::vector<double> report = kind.report(system.group(ref.group), ref.item, impl_->seen(ref));
   const bool off = system.is_off(impl_->state, impl_->map.load[load]);
   if (!off && !impl_->statics) return report;
   // Interactions that are switched off neither act nor store energy; statics has no time.
@@ -153,8 +200,6 @@ bool Simulation::stopped() const { return impl_->stopped(); }
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
 
 const std::vector<SolidMap>& Simulation::solids() const { return impl_->map.solids; }
-
-namespace {}  // namespace
 
 /// Velocity of a node; for a bonded one that of its body, without Newmark's error of order Δt².
 Vec3 Simulation::node_velocity(int node) const {
