@@ -108,6 +108,7 @@ StepReport Simulation::step(double t_limit) {
   impl_->explain(report);
   const double work = wall_clock() - wall;
   impl_->last_work = work;
+  impl_->advance_seconds += work;
   impl_->figures.wall_time_s += work;
   impl_->figures.cpu_time_s += is_short ? std::min(work, kShortWork) : cpu_clock() - cpu;
   return report;
@@ -146,7 +147,9 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       s.figures.end = RunEnd::interrupted;
       break;
     }
+    const double before = wall_clock();
     StepReport report = advance(automatic ? std::min(next, end) : end);
+    s.advance_seconds += wall_clock() - before;
     if (!report.accepted && stop && stop->load()) {
       s.figures.end = RunEnd::interrupted;
       break;
@@ -164,7 +167,10 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       look();
       next = output_after(s.state.t);
     }
-    if (on_step) on_step(*this);  // After the output: a checkpoint of this state has it behind it.
+    if (!on_step) continue;
+    const double recorded = wall_clock();
+    on_step(*this);  // After the output: a checkpoint of this state has it behind it.
+    s.output_seconds += wall_clock() - recorded;
   }
   if (s.stopped() && s.figures.end == RunEnd::finished) {
     const EventSpec& event = s.map.events[static_cast<std::size_t>(s.events->stopped(s.state))];
@@ -193,7 +199,13 @@ RunSummary Simulation::summary() const {
     r.errors = {l.errors.largest, l.errors.sum, l.errors.time, s.whose_error(),
                 std::min(l.errors.steps, l.steps)};
   r.phases = {{"start", s.start_seconds}};
-  for (const auto& phase : s.stepper->phases()) r.phases.push_back(phase);
+  double rest = s.advance_seconds;
+  for (const auto& phase : s.stepper->phases()) {
+    r.phases.push_back(phase);
+    rest -= phase.second;
+  }
+  // Ledger, step control, events and controllers; of statics all that solves.
+  r.phases.emplace_back(s.statics ? "load steps" : "between", std::max(0.0, rest));
   r.phases.emplace_back("output", s.output_seconds);
   r.result_hash = state_hash();
   r.solver = s.engine_name;
