@@ -16,8 +16,6 @@
 namespace polhode::test::contact_conservation_tests {
 namespace {
 
-constexpr int kSteps = 10000;
-
 /// A shape about a metre in size, off the body's centre.
 /// @param folder  Of a mesh file, written here.
 ShapeSpec shape_of(const std::string& type, const Scratch& folder) {
@@ -88,11 +86,11 @@ class TiedScene : public ModelScene {
     bar.contact.touches = false;
     model.solids.push_back(bar);
   }
-  /// Takes all steps. @returns the number of impacts.
-  int count_hits() {
+  /// Takes steps. @returns the number of impacts.
+  int count_hits(int steps) {
     int hits = 0;
     bool touched = false;
-    for (int k = 0; k < kSteps; ++k) {
+    for (int k = 0; k < steps; ++k) {
       step();
       double force = 0.0;
       for (const auto& r : simulation().contact_set()->reports()) force += r.normal_force;
@@ -101,15 +99,16 @@ class TiedScene : public ModelScene {
     }
     return hits;
   }
-  void expect_conservation() const {
+  /// @param most  Of the drifts [-].
+  void expect_conservation(double most) const {
     const Ledger& l = simulation().state().ledger;
     testing::Test::RecordProperty("energy_drift",
                                   format("{:.2e}", l.energy_drift / l.energy_scale));
     testing::Test::RecordProperty("angular_momentum_drift",
                                   format("{:.2e}", l.l_drift / l.l_scale));
-    EXPECT_LT(l.energy_drift, 1e-10 * l.energy_scale);
-    EXPECT_LT(l.p_drift, 1e-10 * l.p_scale);
-    EXPECT_LT(l.l_drift, 1e-10 * l.l_scale);
+    EXPECT_LT(l.energy_drift, most * l.energy_scale);
+    EXPECT_LT(l.p_drift, most * l.p_scale);
+    EXPECT_LT(l.l_drift, most * l.l_scale);
   }
 
  private:
@@ -125,8 +124,8 @@ class Tied : public testing::TestWithParam<Tie> {};
 TEST_P(Tied, BodiesKeepEnergyAndMomentaOverThousandsOfSteps) {
   TiedScene s(GetParam().first, GetParam().second, true);
   s.begin(GetParam().step);
-  EXPECT_GT(s.count_hits(), 5);
-  s.expect_conservation();
+  EXPECT_GT(s.count_hits(10'000), 5);
+  s.expect_conservation(1e-10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Tied,
@@ -143,6 +142,7 @@ struct Carrying {
   std::string first, second;
   bool joint;
   double step;  ///< [s]
+  int steps;
 };
 class TiedWithSolids : public testing::TestWithParam<Carrying> {};
 
@@ -166,15 +166,15 @@ TEST_P(TiedWithSolids, BodiesKeepEnergyAndMomentaOverThousandsOfSteps) {
     s.add_bar(s.b, {0.3, 0.0, 0.0}, 0.3);
   }
   s.begin(given.step);
-  EXPECT_GT(s.count_hits(), 5);
-  s.expect_conservation();
+  EXPECT_GT(s.count_hits(given.steps), 5);
+  s.expect_conservation(1e-14 * given.steps);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, TiedWithSolids,
-                         testing::Values(Carrying{"sphere", "sphere", false, 2.5e-3},
-                                         Carrying{"box", "box", true, 2.5e-3},
-                                         Carrying{"hull", "hull", false, 2.5e-3},
-                                         Carrying{"sphere", "mesh", true, 1e-3}),
+                         testing::Values(Carrying{"sphere", "sphere", false, 2.5e-3, 3000},
+                                         Carrying{"box", "box", true, 2.5e-3, 3000},
+                                         Carrying{"hull", "hull", false, 2.5e-3, 3000},
+                                         Carrying{"sphere", "mesh", true, 1e-3, 7000}),
                          [](const auto& tied) {
                            return tied.param.first + "_" + tied.param.second +
                                   (tied.param.joint ? "_on_joints" : "");

@@ -147,11 +147,11 @@ TEST(SolidContactModel, ElasticBarsExchangeTheirVelocities) {
       EXPECT_NEAR(equal.impulse, 1.0, h > 0.005 ? 0.04 : 0.02) << step << ' ' << restitution;
     }
     EXPECT_NEAR(blow_of_bars(0.5, 20, "1 ms", restitution).impulse, 0.5, 0.015) << restitution;
-    const double coarse = blow_of_bars(1.0, 10, "1 ms", restitution).impulse;
-    const double fine = blow_of_bars(1.0, 50, "1 ms", restitution).impulse;
-    EXPECT_NEAR(fine, 1.0, 0.01) << restitution;
-    EXPECT_LT(std::abs(fine - 1.0), 0.5 * std::abs(coarse - 1.0)) << restitution;
   }
+  const double coarse = blow_of_bars(1.0, 10, "1 ms", 0).impulse;
+  const double fine = blow_of_bars(1.0, 50, "1 ms", 0).impulse;
+  EXPECT_NEAR(fine, 1.0, 0.01);
+  EXPECT_LT(std::abs(fine - 1.0), 0.5 * std::abs(coarse - 1.0));
 }
 
 TEST(SolidContactModel, KeepsEnergyAndMomentaOfCubesThatCollide) {
