@@ -92,7 +92,7 @@ def compare_consoles(page, count):
 
 def compare_errors():
     """Faults of README's table of errors: rows whose step, error and peer are not in one row of the same case of docs/validation.md."""
-    measured, case = [], ""
+    measured, case, count = [], "", ""
     for line in (ROOT / "docs/validation.md").read_text().split("## Published cases")[1].split("\n\\*")[0].splitlines():
         cells = [cell.strip().removesuffix(" \\*") for cell in line.split("|")[1:-1]]
         if len(cells) == 9:

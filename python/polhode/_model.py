@@ -350,8 +350,9 @@ def _restore(tree: "dict[str, Any]", origin: "Optional[_Origin]") -> Model:
 
 
 def load(path: "Union[str, os.PathLike[str]]", **options: Any) -> Model:
-    """Reads a model file, YAML or JSON, or a file of another program (.urdf, .xacro, .xml, .sdf, .world, .feb). Raises ModelError if it
-    is not well-formed, OSError if it cannot be read. Values are checked by check() and before a run.
+    """Reads a model file, YAML or JSON, or a file of another program (.urdf, .xacro, .xml, .sdf, .world, .feb).
+    Raises ModelError if it is not well-formed, OSError if it cannot be read. Values are checked by check() and before
+    a run.
 
     Options are those of `import` in the model file: load("robot.urdf", base="floating", start={"elbow": 0.5})."""
     name = os.fspath(path)
