@@ -67,6 +67,7 @@ void measure(Case c, int frames, const std::string& folder) {
   Simulation simulation(std::move(c.model));
   const std::string path = folder + "/benchmark_frames.h5";
   io::ResultsFile file(path, io::results_layout(simulation), {});
+  file.append(io::results_frame(simulation));  // the first one lays out the file
   InstantSolver solver(simulation.system());
   Watch step, instant, reports, writing, block_lu;
   for (int i = 0; i < frames; ++i) {

@@ -87,8 +87,10 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   const auto vector = [&](const Vec3& x) {
     for (int i = 0; i < 3; ++i) scalar(x[i]);
   };
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const auto vectors = [&](const std::vector<Vec3>& list) {
-    for (const Vec3& x : list) vector(x);
+    if (!list.empty())
+      numbers.insert(numbers.end(), list.front().data(), list.front().data() + 3 * list.size());
   };
   scalar(frame.t);
   vectors(frame.position);
@@ -97,13 +99,12 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   vectors(frame.angular_velocity);
   vectors(frame.force);
   vectors(frame.moment);
-  for (double x : frame.coordinates) scalar(x);
-  for (const auto* list :
-       {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power, &frame.work})
-    for (double x : *list) scalar(x);
+  for (const auto* list : {&frame.coordinates, &frame.rates, &frame.friction, &frame.slips,
+                           &frame.stops, &frame.power, &frame.work})
+    numbers.insert(numbers.end(), list->begin(), list->end());
   vectors(frame.impulse);
   vectors(frame.angular_impulse);
-  for (double x : frame.loads) scalar(x);
+  numbers.insert(numbers.end(), frame.loads.begin(), frame.loads.end());
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
     scalar(x);

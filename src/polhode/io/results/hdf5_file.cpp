@@ -91,6 +91,7 @@ struct Hdf5File::Impl {
   std::size_t held_frames = 0;
   std::size_t frame_size = 0, given_size = 0;  ///< Numbers of a frame, with and without checksums.
   Clock::time_point last_write = Clock::now();
+  double hold = kHold;  ///< Buffering time of the next frames [s].
   std::optional<double> last_time;
   bool failed = false;
 
@@ -146,14 +147,12 @@ struct Hdf5File::Impl {
     Dims most = now;
     most[0] = H5S_UNLIMITED;
 
-    const Id view = dataspace(now, most);
-    const Id source = dataspace(source_now, source_most);
+    const Id view = dataspace(now, most), source = dataspace(source_now, source_most);
     const auto select = [&](const Id& space, Dims start, Dims block) {
       Dims count(block.size(), 1);
       count[0] = H5S_UNLIMITED;
       const Dims stride(block.size(), 1);
-      Dims step = stride;
-      require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), step.data(),
+      require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), stride.data(),
                                   count.data(), block.data()),
               "cannot be written");
     };
@@ -235,8 +234,7 @@ struct Hdf5File::Impl {
   /// data. HDF5 itself would write it last: a kill in between would leave data beyond the recorded
   /// end, and a reader that has read the first block would not accept what comes then.
   /// @param ahead  Announces more than is needed now, in large steps, so that it seldom changes;
-  /// the
-  ///               file itself is one step longer, as readers ask for its length first.
+  /// the file itself is one step longer, as readers ask for its length first.
   void announce_length(bool ahead) {
     hsize_t length = 0;
     if (H5Fget_filesize(file.get(), &length) < 0) return;
@@ -277,14 +275,13 @@ struct Hdf5File::Impl {
 
   void write_held() {
     if (held_frames == 0) return;
+    const Clock::time_point begin = Clock::now();
     // Nobody reads a file without a name: a time before all else keeps its index before the frames.
     const bool first = written == 0 && unnamed;
     if (first) write_channel(0, 0);
     std::size_t offset = channels[0].size();
-    for (std::size_t i = 1; i < channels.size(); ++i) {
+    for (std::size_t i = 1; i < channels.size(); offset += channels[i++].size())
       write_channel(i, offset);
-      offset += channels[i].size();
-    }
     flush_file();
     if (!first) {
       write_channel(0, 0);  // The time last: its length is the number of complete frames.
@@ -294,6 +291,8 @@ struct Hdf5File::Impl {
     held_frames = 0;
     held.clear();
     last_write = Clock::now();
+    const std::chrono::duration<double> took = last_write - begin;
+    hold = std::clamp(took.count() / kWritingShare, kHold, kLongestHold);
   }
 };
 
@@ -448,6 +447,7 @@ void Hdf5File::append(const std::vector<double>& frame) {
   Impl& m = *impl_;
   if (frame.size() != m.given_size)
     throw std::logic_error("Hdf5File::append: a frame of another size");
+  if (m.held.capacity() == 0) m.held.reserve(kHoldBytes / 8 + m.frame_size);  // no copies later
   m.held.insert(m.held.end(), frame.begin(), frame.end());
   m.last_time = frame.front();
   if (m.frame_size > m.given_size) {
@@ -460,7 +460,7 @@ void Hdf5File::append(const std::vector<double>& frame) {
   }
   ++m.held_frames;
   const std::chrono::duration<double> waited = Clock::now() - m.last_write;
-  if (m.written == 0 || waited.count() > kHold || 8 * m.held.size() > kHoldBytes) m.write_held();
+  if (m.written == 0 || waited.count() > m.hold || 8 * m.held.size() > kHoldBytes) m.write_held();
   publish();  // With its first frame, so that every data set has its index.
 }
 

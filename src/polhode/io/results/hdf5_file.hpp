@@ -35,11 +35,12 @@ struct ChannelView {
 /// An HDF5 file with channels that grow frame by frame, consistent after a kill at any moment.
 ///
 /// The first channel is the time; its length is the number of complete frames and is written last.
-/// Frames are buffered for at most kHold of wall time, then written together.
+/// Frames are buffered for kHold of wall time, then written together; for up to kLongestHold if
+/// writing would take more than kWritingShare of the time.
 class Hdf5File {
  public:
-  /// Longest buffering time of a frame [s].
-  static constexpr double kHold = 0.05;
+  /// Buffering times of a frame [s], and part of the time for writing [-].
+  static constexpr double kHold = 0.05, kLongestHold = 0.5, kWritingShare = 0.02;
 
   /// Starts a new file. @throws FileError
   Hdf5File(const std::string& path, std::vector<Channel> channels,

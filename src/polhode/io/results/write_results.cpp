@@ -77,6 +77,10 @@ ResultsFrame results_frame(const Simulation& simulation) {
   const Model& model = simulation.model();
   ResultsFrame frame;
   frame.t = simulation.time();
+  for (auto* list : {&frame.position, &frame.velocity, &frame.angular_velocity})
+    list->reserve(model.bodies.size());
+  frame.orientation.reserve(model.bodies.size());
+  for (auto* list : {&frame.force, &frame.moment}) list->reserve(model.joints.size());
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyMotion motion = simulation.body(static_cast<int>(i));
     frame.position.push_back(motion.r);
