@@ -250,6 +250,33 @@ TEST_F(FebSolidsCli, LoadsOnFacesAndNodes) {
               dead - 1, 1e-9);
 }
 
+// Statics of two steps: what acts in the first alone leaves nothing at the end.
+TEST_F(FebSolidsCli, LoadsOfOneStepEndWithIt) {
+  const std::string control =
+      "<Control><analysis>STATIC</analysis><time_steps>5</time_steps><step_size>0.2</step_size>"
+      "</Control>";
+  const std::string load =
+      "<Loads><nodal_load type='nodal_load' node_set='x1'><dof>x</dof><scale>5e4</scale>"
+      "</nodal_load></Loads>";
+  const auto end = [&](const std::string& first, const std::string& second) {
+    std::string text = file("hex8", kElastic, kSymmetry);
+    const std::size_t from = text.find("<Control>"), to = text.find("</Control>") + 10;
+    text.erase(from, to - from);
+    text.insert(text.find("<LoadData>"), "<Step><step>" + control + first + "</step><step>" +
+                                             control + second + "</step></Step>");
+    return last(text, "{solid: cube, point: [1, 1, 1]}").at(3);
+  };
+  const double l = root([](double x) { return 1e6 * (x * x - 1) / 2 * x - 2e5; }, 1, 2);
+  EXPECT_NEAR(end(load, ""), 0.0, 1e-9);
+  EXPECT_NEAR(end("", load), l - 1, 1e-9);
+  EXPECT_NEAR(end(load, load), l - 1, 1e-9);
+  ASSERT_EQ(run({"convert", "cube.feb", "cube.yaml"}).code, 0);
+  const auto direct = run({"run", "cube.feb", "--json", "--quiet", "-o", "a"});
+  const auto converted = run({"run", "cube.yaml", "--json", "--quiet", "-o", "b"});
+  EXPECT_EQ(value(direct.out, "result_hash"), value(converted.out, "result_hash"));
+  EXPECT_NE(value(direct.out, "result_hash"), "missing");
+}
+
 // The ground carries the weight, 1000 kg times the acceleration.
 TEST_F(FebSolidsCli, BodyForcesAreMinusTheAcceleration) {
   for (const std::string lc : {"", " lc='1'"}) {

@@ -27,26 +27,25 @@ class FebReader {
     model_.joints = make.map();
     model_.loads = make.map();
     if (const Element* module = file_.child(root, "Module")) read_module(*module);
-    const Element* control = section("Control");
-    if (control == nullptr) {
-      file_.xml.fault(root, "the file has no <Control>",
-                      "Add it, in the file or in its only step.");
-      return result;
-    }
-    read_feb_control(model_, *control);
-    for (const Element* e : sections("LoadData")) model_.curves.read(*e, model_.duration);
+    if (!read_feb_steps(model_)) return result;
+    model_.curves.until = model_.duration;
+    using In = FebIn;
+    const auto each = [&](const char* name, In in, const auto& use) {
+      model_.each_section(name, in, use);
+    };
+    each("LoadData", In::values, [&](const Element& e) { model_.curves.read(e); });
     model_.mesh = read_feb_mesh(file_, file_.child(root, "Mesh"), file_.child(root, "MeshDomains"));
     if (const Element* materials = file_.child(root, "Material"))
       read_feb_materials(model_, *materials);
     model_.solids.assemble();
-    for (const Element* e : sections("Boundary")) model_.solids.read_boundary(*e);
-    for (const Element* e : sections("Rigid")) read_feb_rigid(model_, *e);
-    for (const Element* e : sections("Loads")) read_feb_loads(model_, *e);
-    for (const Element* e : sections("Discrete")) model_.solids.read_discrete(*e);
-    for (const Element* e : sections("Initial")) model_.solids.read_initial(*e);
+    each("Boundary", In::file, [&](const Element& e) { model_.solids.read_boundary(e); });
+    each("Rigid", In::step, [&](const Element& e) { read_feb_rigid(model_, e); });
+    each("Loads", In::values, [&](const Element& e) { read_feb_loads(model_, e); });
+    each("Discrete", In::step, [&](const Element& e) { model_.solids.read_discrete(e); });
+    each("Initial", In::start, [&](const Element& e) { model_.solids.read_initial(e); });
     SourceNode probes = make.map();
-    for (const Element* e : sections("Output")) read_feb_output(model_, *e, probes);
-    for (const Element* e : sections("Contact")) model_.solids.read_contact(*e);
+    each("Output", In::values, [&](const Element& e) { read_feb_output(model_, e, probes); });
+    each("Contact", In::file, [&](const Element& e) { model_.solids.read_contact(e); });
     refuse_others();
     make.put(result, "format", make.text("1"));
     if (!model_.gravity.isZero(0.0)) make.put(result, "gravity", make.vector(model_.gravity));
@@ -54,7 +53,8 @@ class FebReader {
     model_.solids.write(result);
     if (!model_.joints.keys.empty()) make.put(result, "joints", std::move(model_.joints));
     if (!model_.loads.keys.empty()) make.put(result, "loads", std::move(model_.loads));
-    write_feb_control(model_, *control, std::move(probes), result);
+    write_feb_steps(model_, result);
+    write_feb_control(model_, std::move(probes), result);
     file_.ignored.add_unread();
     if (model_.bodies.empty() && model_.solids.empty())
       file_.xml.fault(root, "the file has no rigid body and no solid",
@@ -85,50 +85,18 @@ class FebReader {
     file_.ignored.skip(e, {"units"});
   }
 
-  /// Sections of a name, in the file and in its only step.
-  std::vector<const Element*> sections(const char* name) {
-    const Element& root = file_.xml.root();
-    std::vector<const Element*> list = file_.xml.children(root, name);
-    if (const Element* step = only_step())
-      for (const Element* e : file_.xml.children(*step, name)) list.push_back(e);
-    return list;
-  }
-
-  const Element* section(const char* name) {
-    const auto list = sections(name);
-    if (list.size() > 1)
-      file_.xml.fault(*list[1], format("<{}> stands twice", name), "Keep one of them.");
-    return list.empty() ? nullptr : list.front();
-  }
-
-  /// The step of a file that has one; null otherwise.
-  const Element* only_step() {
-    const Element* steps = file_.xml.child(file_.xml.root(), "Step");
-    if (steps == nullptr) return nullptr;
-    const auto list = file_.xml.children(*steps, "step");
-    if (list.size() > 1 && !refused_steps_) {
-      refused_steps_ = true;
-      file_.xml.fault(*list[1], format("the file has {} steps", list.size()),
-                      "Give one step; write the others as load curves, or run them as models.");
-    }
-    for (const Element* e : list) file_.ignored.attributes(*e, {"id", "name"});
-    return list.empty() ? nullptr : list.front();
-  }
-
   void refuse_others() {
     for (const char* name : {"Constraints", "MeshAdaptor", "MeshData", "Code", "Include"})
-      for (const Element* e : sections(name)) {
-        if (e->FirstChildElement() == nullptr && XmlFile::content(*e).value_or("").empty())
-          continue;
-        file_.refuse(*e, format("<{}> is not read", name), "Leave it out.");
-      }
+      model_.each_section(name, FebIn::step, [&](const Element& e) {
+        if (e.FirstChildElement() != nullptr || !XmlFile::content(e).value_or("").empty())
+          file_.refuse(e, format("<{}> is not read", name), "Leave it out.");
+      });
     const Element& root = file_.xml.root();
     file_.ignored.skip(root, {"Globals"});
   }
 
   FebModel& model_;
   FebFile& file_;
-  bool refused_steps_ = false;
 };
 
 }  // namespace
@@ -158,7 +126,8 @@ std::string FebModel::add_joint(const Element& e, const std::string& name, Sourc
 }
 
 std::string FebModel::add_load(const Element& e, const std::string& name, SourceNode node) {
-  std::string chosen = file.name(e, name, load_names);
+  // Events name joints and loads alike.
+  std::string chosen = file.name(e, name, steps.size() > 1 ? joint_names : load_names);
   file.make(e).put(loads, chosen, std::move(node));
   return chosen;
 }

@@ -58,70 +58,120 @@ double equal_interval(const std::vector<std::array<double, 2>>& points, double e
   return interval;
 }
 
-}  // namespace
+/// What one <Control> asks for.
+struct Asked {
+  double step = 1.0;       ///< [s]
+  double every = 0.0;      ///< Interval of output [s]; 0: none.
+  bool automatic = false;  ///< A time stepper chooses the steps.
+  double longest = 0.0;    ///< Of the time stepper [s]; 0: none.
+  double radius = 1.0;     ///< Spectral radius.
+  bool operator==(const Asked&) const = default;
+};
 
-void read_feb_control(FebModel& model, const Element& section) {
+Asked asked_by(FebModel& model, const Element& section) {
   FebFile& file = model.file;
-  const std::string kind = lower_case(file.text(section, "analysis"));
-  model.dynamic = kind == "dynamic" || kind == "1" || kind == "2";
-  if (!model.dynamic && !kind.empty() && kind != "static" && kind != "0" && kind != "steady-state")
-    file.refuse(*file.child(section, "analysis"),
-                format("the analysis {} is not read", quote(kind)), "Use STATIC or DYNAMIC.");
-  const double steps = std::round(positive(file, section, "time_steps"));
-  const double step = positive(file, section, "step_size");
-  model.duration = steps * step;
-  if (!(steps >= 1.0 && steps <= kMostSteps && std::isfinite(model.duration) &&
-        model.duration > 0.0)) {
-    file.xml.fault(section, format("the analysis has {} steps of {}", steps, step),
-                   format("Give 1 to {} steps of a finite length.", kMostSteps));
-    model.duration = 1.0;
-  }
-}
-
-void write_feb_control(FebModel& model, const Element& section, SourceNode probes,
-                       SourceNode& root) {
-  FebFile& file = model.file;
-  const NodeBuilder make = file.make(section);
-  const double step = file.number(section, "step_size").value_or(1.0);
-  const double steps = std::round(file.number(section, "time_steps").value_or(1.0));
-  SourceNode analysis = make.map(), output = make.map();
-  make.put(analysis, "type", make.text(model.dynamic ? "dynamics" : "statics"));
-  make.put(analysis, model.dynamic ? "duration" : "history", make.number(model.duration));
-  double every = model.dynamic ? 0.0 : step;
-  const Element* stepper = file.child(section, "time_stepper");
-  if (stepper != nullptr) {
+  Asked asked;
+  asked.step = file.number(section, "step_size").value_or(1.0);
+  asked.every = model.dynamic ? 0.0 : asked.step;
+  if (const Element* stepper = file.child(section, "time_stepper")) {
     const FebValue most = file.value(*stepper, "dtmax", 0.1);
-    double longest = most.factor;
+    asked.automatic = true;
+    asked.longest = most.factor;
     if (!most.is_constant()) {
       const auto points = model.curves.points(*most.controller);
-      longest = 0.0;
-      for (const auto& p : points) longest = std::max(longest, p[1]);
-      every = equal_interval(points, model.duration);
-      if (every == 0.0 && !points.empty())
+      asked.longest = 0.0;
+      for (const auto& p : points) asked.longest = std::max(asked.longest, p[1]);
+      asked.every = equal_interval(points, model.duration);
+      if (asked.every == 0.0 && !points.empty())
         file.approximated(*stepper,
                           "must points at different intervals are no output times: steps end "
                           "at kinks of the loads in any case");
     }
     file.xml.skip(*stepper);
-    if (model.dynamic) {
-      make.put(analysis, "step", make.text("auto"));
-      if (longest > 0.0) make.put(analysis, "max_step", make.number(longest));
+    if (model.dynamic)
       file.approximated(
           *stepper, "the time stepper becomes automatic steps by their error, of at most dtmax");
-    }
-  } else if (model.dynamic) {
-    make.put(analysis, "step", make.number(step));
   }
-  if (!model.dynamic) make.put(analysis, "load_steps", make.number(std::clamp(steps, 1.0, 1e5)));
   if (const Element* solver = file.child(section, "solver")) {
-    const double radius = spectral_radius(file, *solver);
-    if (model.dynamic && radius != 1.0) make.put(analysis, "rho_inf", make.number(radius));
+    asked.radius = spectral_radius(file, *solver);
     file.xml.skip(*solver);
     file.ignored.add(*solver, "<solver> with its tolerances", "is FEBio's");
   }
   for (const Element* e : file.children(section)) file.xml.skip(*e);
+  return asked;
+}
+
+/// Whether the analysis of a step is dynamic.
+bool is_dynamic(FebFile& file, const Element& control) {
+  const std::string kind = lower_case(file.text(control, "analysis"));
+  const bool dynamic = kind == "dynamic" || kind == "1" || kind == "2";
+  if (!dynamic && !kind.empty() && kind != "static" && kind != "0" && kind != "steady-state")
+    file.refuse(*file.child(control, "analysis"),
+                format("the analysis {} is not read", quote(kind)), "Use STATIC or DYNAMIC.");
+  return dynamic;
+}
+
+}  // namespace
+
+void read_feb_control(FebModel& model) {
+  FebFile& file = model.file;
+  for (FebStep& s : model.steps) {
+    const bool dynamic = is_dynamic(file, *s.control);
+    if (&s == &model.steps.front())
+      model.dynamic = dynamic;
+    else if (dynamic != model.dynamic)
+      file.xml.fault(*s.control, "some steps are STATIC and others DYNAMIC",
+                     "Give all steps one analysis, or run them as two models.");
+    const double steps = std::round(positive(file, *s.control, "time_steps"));
+    const double length = positive(file, *s.control, "step_size");
+    s.begin = model.duration;
+    s.end = model.duration + steps * length;
+    if (!(steps >= 1.0 && steps <= kMostSteps && std::isfinite(s.end) && s.end > s.begin)) {
+      file.xml.fault(*s.control, format("the analysis has {} steps of {}", steps, length),
+                     format("Give 1 to {} steps of a finite length.", kMostSteps));
+      s.end = s.begin + 1.0;
+    }
+    model.duration = s.end;
+  }
+}
+
+void write_feb_control(FebModel& model, SourceNode probes, SourceNode& root) {
+  FebFile& file = model.file;
+  const Element& first = *model.steps.front().control;
+  const NodeBuilder make = file.make(first);
+  Asked all = asked_by(model, first);
+  bool differ = false;
+  const Element* last = &first;
+  for (const FebStep& s : model.steps) {
+    if (s.control == last) continue;
+    last = s.control;
+    const Asked own = asked_by(model, *s.control);
+    differ = differ || own != all;
+    all.step = std::min(all.step, own.step);
+    if (own.every > 0.0) all.every = all.every > 0.0 ? std::min(all.every, own.every) : own.every;
+    all.automatic = all.automatic || own.automatic;
+    if (own.longest > 0.0)
+      all.longest = all.longest > 0.0 ? std::min(all.longest, own.longest) : own.longest;
+  }
+  if (differ)
+    file.approximated(*last,
+                      "steps with different settings all have the shortest length of a step, and "
+                      "the damping of the first");
+  const double steps = std::round(model.duration / all.step);
+  SourceNode analysis = make.map(), output = make.map();
+  make.put(analysis, "type", make.text(model.dynamic ? "dynamics" : "statics"));
+  make.put(analysis, model.dynamic ? "duration" : "history", make.number(model.duration));
+  if (!model.dynamic) {
+    make.put(analysis, "load_steps", make.number(std::clamp(steps, 1.0, 1e5)));
+  } else if (all.automatic) {
+    make.put(analysis, "step", make.text("auto"));
+    if (all.longest > 0.0) make.put(analysis, "max_step", make.number(all.longest));
+  } else {
+    make.put(analysis, "step", make.number(all.step));
+  }
+  if (model.dynamic && all.radius != 1.0) make.put(analysis, "rho_inf", make.number(all.radius));
   make.put(root, "analysis", std::move(analysis));
-  if (every > 0.0) make.put(output, "every", make.number(every));
+  if (all.every > 0.0) make.put(output, "every", make.number(all.every));
   if (!probes.keys.empty()) make.put(output, "probes", std::move(probes));
   if (!output.keys.empty()) make.put(root, "output", std::move(output));
 }

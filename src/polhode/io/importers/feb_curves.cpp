@@ -70,6 +70,31 @@ Powers piece_before(const FebCurve& curve, std::size_t n) {
   return line(p[n - 1], p[n], origin);
 }
 
+/// The same polynomial, since another time.
+FebPiece moved(FebPiece piece, double from) {
+  Powers& c = piece.powers;
+  const double shift = from - piece.from;
+  for (std::size_t k = 0; k + 1 < c.size(); ++k)  // Repeated division by (t - shift).
+    for (std::size_t j = c.size() - 1; j-- > k;) c[j] += shift * c[j + 1];
+  piece.from = from;
+  return piece;
+}
+
+/// A curve that is zero outside of a time.
+std::vector<FebPiece> during(const FebWindow& window, const std::vector<FebPiece>& pieces,
+                             double until) {
+  std::vector<FebPiece> own;
+  if (window.begin > 0.0) own.push_back({0.0, window.begin, {}});
+  for (FebPiece piece : pieces) {
+    if (piece.to <= window.begin || piece.from >= window.end) continue;
+    if (piece.from < window.begin) piece = moved(piece, window.begin);
+    piece.to = std::min(piece.to, window.end);
+    own.push_back(piece);
+  }
+  if (window.end < until) own.push_back({window.end, until, {}});
+  return own;
+}
+
 bool is_flat(const FebPiece& piece, std::size_t from) {
   return std::all_of(piece.powers.begin() + static_cast<std::ptrdiff_t>(from), piece.powers.end(),
                      [](double c) { return c == 0.0; });
@@ -144,8 +169,7 @@ std::vector<FebPiece> FebCurve::pieces(double until, std::size_t most) const {
   return all;
 }
 
-void FebCurves::read(const XmlFile::Element& section, double until) {
-  until_ = until;
+void FebCurves::read(const XmlFile::Element& section) {
   for (const XmlFile::Element* e : file_.xml.children(section, "load_controller")) {
     const auto id = file_.id(*e);
     const std::string type = file_.type(*e);
@@ -230,7 +254,10 @@ std::vector<std::array<double, 2>> FebCurves::points(int controller) const {
 
 SourceNode FebCurves::node(const FebValue& value, double factor) {
   const NodeBuilder make{value.at == nullptr ? 0 : file_.xml.line(*value.at)};
-  if (value.is_constant()) return make.number(factor * value.factor);
+  if (value.is_zero() || (value.is_constant() && !window))
+    return make.number(factor * value.factor);
+  if (value.is_constant())
+    return pieces_node(make, *value.at, {{0.0, until, {1.0}}}, factor * value.factor);
   const auto found = controllers_.find(*value.controller);
   if (found == controllers_.end()) {
     file_.xml.fault(*value.at, format("there is no load controller {}", *value.controller),
@@ -239,25 +266,27 @@ SourceNode FebCurves::node(const FebValue& value, double factor) {
   }
   const Controller& controller = found->second;
   if (!controller.usable) return make.number(0.0);  // An error, or left out, already.
-  if (controller.math.empty()) return curve_node(make, value, controller, factor);
-  SourceNode text = make.text(format("({})*({})", factor * value.factor, controller.math));
+  if (controller.math.empty())
+    return pieces_node(make, *controller.at, controller.curve.pieces(until, kMostPoints),
+                       factor * value.factor);
+  std::string product = format("({})*({})", factor * value.factor, controller.math);
+  if (window) product += format("*pulse(t, {}, {})", window->begin, window->end);
+  SourceNode text = make.text(product);
   text.in_quotes = true;
   return text;
 }
 
-SourceNode FebCurves::curve_node(const NodeBuilder& make, const FebValue& value,
-                                 const Controller& controller, double factor) {
-  const double scale = factor * value.factor;
-  std::vector<FebPiece> pieces = controller.curve.pieces(until_, kMostPoints);
+SourceNode FebCurves::pieces_node(const NodeBuilder& make, const XmlFile::Element& at,
+                                  std::vector<FebPiece> pieces, double scale) {
   // Pieces before the start, or after the end, have no influence.
   while (pieces.size() > 1 && pieces.front().to <= 0.0) pieces.erase(pieces.begin());
-  while (pieces.size() > 1 && pieces.back().from >= until_) pieces.pop_back();
+  while (pieces.size() > 1 && pieces.back().from >= until) pieces.pop_back();
   if (pieces.empty()) {
-    file_.xml.fault(*controller.at,
-                    format("the load curve has more than {} points up to the end", kMostPoints),
+    file_.xml.fault(at, format("the load curve has more than {} points up to the end", kMostPoints),
                     "Give a longer period.");
     return make.number(0.0);
   }
+  if (window) pieces = during(*window, pieces, until);
   const auto all_flat = [&](std::size_t from) {
     return std::all_of(pieces.begin(), pieces.end(),
                        [&](const FebPiece& p) { return is_flat(p, from); });
@@ -287,14 +316,13 @@ SourceNode FebCurves::curve_node(const NodeBuilder& make, const FebValue& value,
       }
     points.push_back({pieces.back().to, scale * pieces.back().at(pieces.back().to)});
     if (!straight)
-      file_.approximated(*controller.at,
+      file_.approximated(at,
                          format("the load curve has {} curved pieces: each is {} straight lines",
                                 pieces.size(), kLines));
     return table(make, points, "linear");
   }
   if (pieces.size() > kMostTerms) {
-    file_.refuse(*controller.at,
-                 format("the load curve jumps between more than {} pieces", kMostTerms),
+    file_.refuse(at, format("the load curve jumps between more than {} pieces", kMostTerms),
                  "Give fewer points or another rule.");
     return make.number(0.0);
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,19 +31,27 @@ struct FebCurve {
   [[nodiscard]] std::vector<FebPiece> pieces(double until, std::size_t most) const;
 };
 
+/// Times between which a value acts; elsewhere it is zero.
+struct FebWindow {
+  double begin = 0.0, end = 0.0;  ///< [s]
+};
+
 /// The load controllers of a file, as values of a model file.
 class FebCurves {
  public:
   explicit FebCurves(FebFile& file) : file_(file) {}
 
+  double until = 0.0;  ///< End of the analysis [s]; curves that repeat are written out up to it.
+
   /// Reads <LoadData>.
-  /// @param until  End of the analysis [s]; curves that repeat are written out up to it.
-  void read(const XmlFile::Element& section, double until);
+  void read(const XmlFile::Element& section);
 
   /// A value over time, times a factor.
   [[nodiscard]] SourceNode node(const FebValue& value, double factor = 1.0);
   /// Times of the points of a load curve; none of other controllers.
   [[nodiscard]] std::vector<std::array<double, 2>> points(int controller) const;
+
+  std::optional<FebWindow> window;  ///< Of all values that are written while it is there.
 
  private:
   struct Controller {
@@ -52,11 +61,10 @@ class FebCurves {
     bool usable = false;
   };
   void read_curve(const XmlFile::Element& e, Controller& controller);
-  SourceNode curve_node(const NodeBuilder& make, const FebValue& value,
-                        const Controller& controller, double factor);
+  SourceNode pieces_node(const NodeBuilder& make, const XmlFile::Element& at,
+                         std::vector<FebPiece> pieces, double scale);
 
   FebFile& file_;
-  double until_ = 0.0;
   std::map<int, Controller> controllers_;
 };
 

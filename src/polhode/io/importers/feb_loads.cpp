@@ -57,9 +57,10 @@ void read_feb_loads(FebModel& model, const Element& section) {
     model.solids.read_surface_load(*e);
   for (const Element* e : file.xml.children(section, "edge_load"))
     file.refuse(*e, "<edge_load> is not read", "Use nodal loads.");
-  bool plain = std::all_of(model.bodies.begin(), model.bodies.end(), [](const FebBody& b) {
-    return b.is_fixed() || (b.mesh.mass > 0.0 && b.is_centred());
-  });
+  bool plain = model.step == nullptr &&
+               std::all_of(model.bodies.begin(), model.bodies.end(), [](const FebBody& b) {
+                 return b.is_fixed() || (b.mesh.mass > 0.0 && b.is_centred());
+               });
   for (const BodyForce& force : forces)
     for (const FebValue& value : force.values) plain = plain && value.is_constant();
   for (const BodyForce& force : forces) {

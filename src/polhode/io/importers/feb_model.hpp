@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -43,6 +44,18 @@ struct FebBody {
   [[nodiscard]] bool is_centred() const;
 };
 
+/// A step of a file, or the whole file.
+struct FebStep {
+  const XmlFile::Element* at = nullptr;
+  const XmlFile::Element* control = nullptr;
+  double begin = 0.0, end = 0.0;   ///< [s]
+  std::vector<std::string> items;  ///< Joints and loads that act in this step alone.
+};
+
+/// Where a section may stand in a file of several steps: not in them, in the first one, or in any,
+/// so that its joints and loads are switched, or its values are zero in other steps.
+enum class FebIn : unsigned char { file, start, step, values };
+
 /// All that is read of an FEBio file, and the parts of the model that come from it.
 struct FebModel {
   explicit FebModel(FebFile& f) : file(f), curves(f), solids(*this) {}
@@ -56,12 +69,17 @@ struct FebModel {
   FebSolids solids;
   bool dynamic = false;
   double duration = 0.0;
+  std::vector<FebStep> steps;     ///< One at least.
+  const FebStep* step = nullptr;  ///< Whose section is read; null: one that acts from start to end.
   Vec3 gravity = Vec3::Zero();
   SourceNode joints, loads;
   std::set<std::string> joint_names, load_names;
   /// Of each connector "joint" or "load", and its name; "" if it became none.
   std::vector<std::pair<std::string, std::string>> connectors;
 
+  /// Reads all sections of a name, in the file and in its steps.
+  void each_section(const char* name, FebIn in,
+                    const std::function<void(const XmlFile::Element&)>& read);
   /// Body of a tag that has its name or the number of its material; null after an error.
   FebBody* body(const XmlFile::Element& parent, const char* tag);
   /// Adds a joint or a load of a name, or of a similar one that is not taken. @returns the name.
@@ -84,11 +102,14 @@ void read_feb_connector(FebModel& model, const XmlFile::Element& e);
 void read_feb_loads(FebModel& model, const XmlFile::Element& section);
 /// Reads requests for the log file as probes.
 void read_feb_output(FebModel& model, const XmlFile::Element& section, SourceNode& probes);
-/// Reads <Control>: whether the analysis is dynamic, and its length.
-void read_feb_control(FebModel& model, const XmlFile::Element& section);
+/// Reads the steps of a file. @returns whether each has a <Control>.
+bool read_feb_steps(FebModel& model);
+/// Reads <Control> of all steps: whether the analysis is dynamic, and their times.
+void read_feb_control(FebModel& model);
 /// Analysis and output of a model file; after the load curves.
 /// @param probes  Without keys: none.
-void write_feb_control(FebModel& model, const XmlFile::Element& section, SourceNode probes,
-                       SourceNode& root);
+void write_feb_control(FebModel& model, SourceNode probes, SourceNode& root);
+/// Events that switch what acts in one step of several.
+void write_feb_steps(FebModel& model, SourceNode& root);
 
 }  // namespace polhode::io

@@ -109,12 +109,14 @@ class RigidReader {
     freedom = {Freedom::prescribed, value, &e};
   }
 
-  /// A ramp over the analysis up to a value, as an expression.
+  /// A ramp over the analysis, or the step, up to a value, as an expression.
   SourceNode ramp(const Element& e, double value) const {
     const NodeBuilder make = file_.make(e);
     SourceNode table = make.map(), points = make.list();
-    points.children.push_back(make.list({make.number(0.0), make.number(0.0)}));
-    points.children.push_back(make.list({make.number(model_.duration), make.number(value)}));
+    const double begin = model_.step == nullptr ? 0.0 : model_.step->begin;
+    const double end = model_.step == nullptr ? model_.duration : model_.step->end;
+    points.children.push_back(make.list({make.number(begin), make.number(0.0)}));
+    points.children.push_back(make.list({make.number(end), make.number(value)}));
     make.put(table, "table", std::move(points));
     return table;
   }
@@ -193,8 +195,17 @@ class RigidReader {
 
 void read_feb_rigid(FebModel& model, const Element& section) {
   RigidReader reader(model);
-  for (const Element* e : model.file.xml.children(section, "rigid_bc")) reader.read_constraint(*e);
-  for (const Element* e : model.file.xml.children(section, "rigid_ic")) reader.read_start(*e);
+  const bool later = model.step != nullptr && model.step != &model.steps.front();
+  const auto read = [&](const char* tag, bool elsewhere, auto&& use) {
+    for (const Element* e : model.file.xml.children(section, tag))
+      if (elsewhere)
+        model.file.refuse(*e, format("<{}> of one step of several is not read", tag),
+                          "Put it outside the steps, with load curves over all of them.");
+      else
+        use(*e);
+  };
+  read("rigid_bc", model.step != nullptr, [&](const Element& e) { reader.read_constraint(e); });
+  read("rigid_ic", later, [&](const Element& e) { reader.read_start(e); });
   for (const Element* e : model.file.xml.children(section, "rigid_load")) reader.read_load(*e);
   for (const Element* e : model.file.xml.children(section, "rigid_connector"))
     read_feb_connector(model, *e);
