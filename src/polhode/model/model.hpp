@@ -143,6 +143,8 @@ struct LoadSpec {
 
 struct OutputSpec {
   std::optional<double> every;  ///< [s]; left out: every step.
+  /// Records may be between the ends of automatic steps, see DenseOutput; else steps end at them.
+  bool between_steps = true;
   std::vector<ProbeSpec> probes;
   bool paraview = false, csv = true, hdf5 = true;
 };

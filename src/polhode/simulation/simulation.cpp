@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <polhode/core/clock.hpp>
 #include <polhode/core/version.hpp>
@@ -141,14 +142,27 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   if (s.state.ledger.steps == 0) look();
   s.figures.end = RunEnd::finished;
   double next = output_after(s.state.t);
+  const bool dense = every && s.has_dense_output();
+  const auto look_between = [&](double t) {
+    const double t0 = wall_clock();
+    State reached = std::exchange(s.state, s.dense->at(t));
+    s.forget_reports();
+    s.output_seconds += wall_clock() - t0;
+    s.between_steps = true;
+    look();
+    s.between_steps = false;
+    s.state = std::move(reached);
+    s.forget_reports();
+  };
   if (s.statics) s.statics->set_stop(stop);
   while (s.state.t < end * (1.0 - kSameTime) && !s.stopped()) {
     if (stop && stop->load()) {
       s.figures.end = RunEnd::interrupted;
       break;
     }
+    if (dense) s.dense->start(s.state);
     const double before = wall_clock();
-    StepReport report = advance(automatic ? std::min(next, end) : end);
+    StepReport report = advance(automatic && !dense ? std::min(next, end) : end);
     s.advance_seconds += wall_clock() - before;
     if (!report.accepted && stop && stop->load()) {
       s.figures.end = RunEnd::interrupted;
@@ -161,6 +175,10 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       s.watch_stretches();
       watch_stress();
       break;
+    }
+    if (dense) {
+      s.dense->finish(s.state, s.stepper->took_whole_order());
+      for (; next < s.state.t * (1.0 - kSameTime); next = output_after(next)) look_between(next);
     }
     const bool finished = s.state.t >= end * (1.0 - kSameTime) || s.stopped();
     if (!every || finished || s.state.t >= next * (1.0 - kSameTime)) {
@@ -271,6 +289,8 @@ RunSummary Simulation::summary() const {
   }
   return r;
 }
+bool Simulation::between_steps() const { return impl_->between_steps; }
+
 std::string Simulation::state_hash() const {
   return polhode::state_hash(impl_->system, impl_->state);
 }

@@ -224,6 +224,8 @@ class Simulation {
   [[nodiscard]] const std::vector<SensorEvent>& sensor_events() const;
   /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;
+  /// Whether run() is recording a state between the ends of a step, see DenseOutput.
+  [[nodiscard]] bool between_steps() const;
 
  private:
   /// Takes a step and handles its events.

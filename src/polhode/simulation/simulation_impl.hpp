@@ -20,6 +20,7 @@
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/model/endless.hpp>
 #include <polhode/simulation/controllers.hpp>
+#include <polhode/simulation/dense_output.hpp>
 #include <polhode/simulation/event_watch.hpp>
 #include <polhode/simulation/held_values.hpp>
 #include <polhode/simulation/method.hpp>
@@ -59,6 +60,8 @@ struct Simulation::Impl {
   ContactStatistics contacts;
   std::unique_ptr<EventWatch> events;        ///< Null if there are none.
   std::unique_ptr<Controllers> controllers;  ///< Likewise.
+  std::unique_ptr<DenseOutput> dense;        ///< Null where frames are ends of steps.
+  bool between_steps = false;                ///< `state` is one of `dense`.
   std::vector<int> due_at_start;             ///< Events found nearer than a step is short.
   State state;
   StartReport start_report;
@@ -127,6 +130,15 @@ struct Simulation::Impl {
     if (!map.events.empty()) events = std::make_unique<EventWatch>(simulation, map);
     if (!model.controllers.empty())
       controllers = std::make_unique<Controllers>(simulation, map, outputs, method.control.order);
+  }
+
+  /// Whether states between the ends of steps can be recorded.
+  bool has_dense_output() {
+    if (!model.output.between_steps || statics || events || controllers ||
+        !DenseOutput::suits(system, method.control))
+      return false;
+    if (!dense) dense = std::make_unique<DenseOutput>(system, choose_method(system, model));
+    return true;
   }
 
   void choose_statics() {

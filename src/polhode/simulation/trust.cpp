@@ -5,6 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/simulation/trust.hpp>
 #include <polhode/stepping/ledger.hpp>
+#include <polhode/stepping/step_control.hpp>
 
 namespace polhode {
 
@@ -33,7 +34,9 @@ std::vector<std::string> reasons_for_distrust(const Model& model, const System& 
                                               const Ledger& ledger, bool extrapolated) {
   std::vector<std::string> reasons;
   double allowed = allowed_drift(model);
-  if (extrapolated) allowed = std::clamp(ledger.errors.sum, allowed, kPlainBalance);
+  if (extrapolated)
+    allowed =
+        std::clamp(step_control::kBalanceTolerances * ledger.errors.sum, allowed, kPlainBalance);
   const Drifts drift = drifts(ledger);
   const auto balance = [&](const char* what, double value) {
     if (value <= allowed) return;

@@ -171,6 +171,8 @@ void Stepper::forces_jump(State& state) {
 
 void Stepper::leave() { impl_->single.ledger().forget(); }
 
+bool Stepper::took_whole_order() const { return impl_->composed(); }
+
 const NewtonEngine& Stepper::engine() const { return impl_->single.engine(); }
 
 Balance Stepper::balance(const State& state) const { return impl_->single.ledger().balance(state); }

@@ -50,6 +50,9 @@ class Stepper {
   /// Must be called before a step from another state than the last one ended at.
   void leave();
   [[nodiscard]] const NewtonEngine& engine() const;
+  /// Whether the last step was of the method's order, so that its motion is smooth: not one of
+  /// order 2 instead, around a stop or where that needs less work.
+  [[nodiscard]] bool took_whole_order() const;
   [[nodiscard]] Balance balance(const State& state) const;
   /// Warnings: goals that automatic steps could not reach.
   [[nodiscard]] std::vector<std::string> warnings() const;

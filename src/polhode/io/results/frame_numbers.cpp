@@ -114,6 +114,7 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   scalar(frame.dt);
   for (std::int64_t x : {frame.steps, frame.iterations, frame.rejected})
     scalar(static_cast<double>(x));
+  scalar(frame.between_steps ? 1.0 : 0.0);
   if (frame.has_contacts) add_contacts(frame, numbers);
   add_solids(frame, numbers);
   add_lines(frame, numbers);

@@ -215,6 +215,7 @@ FilePlan plan_results(const ResultsLayout& layout) {
   p.add(r::kSolver, {"steps", 1, "-"}, {}, true);
   p.add(r::kSolver, {"iterations", 1, "-"}, {}, true);
   p.add(r::kSolver, {"rejected", 1, "-"}, {}, true);
+  p.add(r::kSolver, {"between_steps", 1, "-"}, {}, true);
   plan_contacts(layout, p);
   plan_solids(layout, p);
   plan_lines(layout, p);

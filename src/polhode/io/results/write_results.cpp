@@ -134,6 +134,7 @@ ResultsFrame results_frame(const Simulation& simulation) {
   frame.steps = state.ledger.steps;
   frame.iterations = state.ledger.iterations;
   frame.rejected = state.ledger.rejected;
+  frame.between_steps = simulation.between_steps();
   return frame;
 }
 

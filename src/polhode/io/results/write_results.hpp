@@ -90,6 +90,7 @@ struct ResultsFrame {
   double energy_drift = 0.0;                             ///< See drifts() [-].
   double dt = 0.0;                                       ///< Length of the last step [s].
   std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
+  bool between_steps = false;  ///< Interpolated between the ends of a step.
 };
 
 [[nodiscard]] ResultsLayout results_layout(const Simulation& simulation);

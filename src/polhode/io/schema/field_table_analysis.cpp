@@ -247,6 +247,15 @@ const FieldTable& output_fields() {
            .range = kPositive,
            .member = &OutputSpec::every,
            .may_change = true},
+          {.name = "between_steps",
+           .kind = kBoolean,
+           .meaning = "Records of automatic steps at orders above 2 are interpolated within their "
+                      "tolerance, so that they do not shorten steps. With false steps end at them: "
+                      "there energy is conserved to the last digit.",
+           .standard = "true",
+           .member = &OutputSpec::between_steps,
+           .may_change = true,
+           .since = "0.2"},
           {.name = "probes",
            .kind = kNamed,
            .meaning = "Probes by name, each at its own rate.",
