@@ -182,6 +182,7 @@ struct Track {
   }
 };
 
+/// @tests{dense-output}
 TEST_P(AtTolerance, MechanismsAreWhereStepsThatEndThereTakeThem) {
   const double tolerance = GetParam();
   struct Case {

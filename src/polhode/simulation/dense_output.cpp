@@ -27,7 +27,7 @@ constexpr double kTinyStep = 1e-6;
 /// Difference of a memory from its prediction that is rounding, relative to its size or 1.
 constexpr double kPredicted = 1e-10;
 /// Part of the error that halving must leave at most, for a further one to be of use: the error of
-/// a smooth motion falls to less than a hundredth, that of rounding and of a kink to a quarter.
+/// a smooth motion falls to a thirtieth or less, that of rounding and of a kink to a quarter.
 constexpr double kFalls = 0.15;
 /// Largest difference of a polynomial, and h times that of its rate, from the one without the
 /// highest derivative at a node, over the difference of that derivative: times h² with
@@ -159,11 +159,12 @@ struct Window {
     Eigen::Matrix<double, 7, 1> total = Eigen::Matrix<double, 7, 1>::Zero();
     const double half = 0.5 * length();
     Eigen::Index k = 0;
-    for (const Node* node : nodes()) {
+    for (const Node* node : {first.get(), middle.get(), last.get()}) {
+      if (!node) continue;
       const BodyJet& j = node->bodies[body];
       // The same rotation as that of the first node has, not its negative quaternion.
       const double sign =
-          j.value.tail<4>().dot(nodes().front()->bodies[body].value.tail<4>()) < 0.0 ? -1.0 : 1.0;
+          j.value.tail<4>().dot(first->bodies[body].value.tail<4>()) < 0.0 ? -1.0 : 1.0;
       Eigen::Matrix<double, 7, 1> own = Eigen::Matrix<double, 7, 1>::Zero();
       double scale = 1.0;
       for (int d = 0; d <= highest - (node == without ? 1 : 0); ++d, scale *= half)
