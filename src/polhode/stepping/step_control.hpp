@@ -29,6 +29,8 @@ inline constexpr double kRoundOffComposed =
 /// Smallest order in the step length by which a rejected step's error decreases; otherwise it is
 /// noise, which is small.
 inline constexpr double kFalls = 1.5, kMaxNoise = 1e-8, kMaxNoiseComposed = 1e-11;
+/// Likewise of the energy that a step misses, as a part of the largest energy [-].
+inline constexpr double kMaxImbalance = 1e-9;
 /// Factor on the noise found for later steps, and its decay per step.
 inline constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
 /// Tolerated error of an impact in time, times the jump of velocities, as a part of the tolerance;

@@ -184,16 +184,17 @@ struct Stepper::Impl {
 
   std::optional<double> difference_of(const std::vector<double>& list, const State& from,
                                       const State& reached, double H, double of_velocities);
+  using Verdict = StepVerdict;
+  using Refused = RefusedStep;
+
   std::optional<double> composed_error(const State& from, const State& reached, double H);
   [[nodiscard]] double extrapolated_error(const State& from, const State& reached, double H,
-                                          double allowed) const;
+                                          double allowed, Refused& refused) const;
   std::optional<double> error_by_halves(const State& from, const State& reached, double H);
   std::optional<double> error_of_two(const State& from, double dt);
   void find_length(State& state, double way);
   void record(State& state, double H, double verdict);
 
-  using Verdict = StepVerdict;
-  using Refused = RefusedStep;
   Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
 
