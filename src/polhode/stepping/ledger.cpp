@@ -329,14 +329,15 @@ Balance EnergyLedger::balance(const State& state) const {
           .angular_momentum = vec(s.l)};
 }
 
-double EnergyLedger::imbalance(const State& from, const State& to) const {
+double EnergyLedger::imbalance(const State& from, const State& to, double rounding) const {
   const auto kept = [](const Balance& b) {
     return b.kinetic + b.potential + b.dissipated - b.put_in;
   };
   const Balance before = balance(from), after = balance(to);
   const double missed = std::abs(kept(after) - kept(before));
   // A first tiny motion has less energy than others round.
-  if (missed <= kImbalanceRounding * (after.kinetic + std::abs(after.potential))) return 0.0;
+  if (missed <= rounding + kImbalanceRounding * (after.kinetic + std::abs(after.potential)))
+    return 0.0;
   const double scale = std::max(from.ledger.energy_scale, after.kinetic);
   return scale > 0.0 ? missed / scale : 0.0;
 }

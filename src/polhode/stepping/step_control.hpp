@@ -29,8 +29,6 @@ inline constexpr double kRoundOffComposed =
 /// Smallest order in the step length by which a rejected step's error decreases; otherwise it is
 /// noise, which is small.
 inline constexpr double kFalls = 1.5, kMaxNoise = 1e-8, kMaxNoiseComposed = 1e-11;
-/// Likewise of the energy that a step misses, as a part of the largest energy [-].
-inline constexpr double kMaxImbalance = 1e-9;
 /// Factor on the noise found for later steps, and its decay per step.
 inline constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
 /// Tolerated error of an impact in time, times the jump of velocities, as a part of the tolerance;
@@ -46,6 +44,10 @@ inline constexpr int kStepProbes = 40, kSampled = 64;
 inline constexpr double kWorthLonger = 3.0, kLonger = 10.0;
 /// Drift of the balance of energy over a run that extrapolated steps may leave, in tolerances [-].
 inline constexpr double kBalanceTolerances = 10.0;
+/// Rounding of the work of rows in an extrapolated step [-]: positions give velocities their
+/// relative rounding times the reach over the step, rows forces that are as wrong by that over the
+/// step once more, which the displacement multiplies; weights and substeps enlarge it.
+inline constexpr double kWorkRounding = 1e-12;
 /// Part of the planned length below which a step that a limit ends is not judged by its balance.
 inline constexpr double kCutShort = 0.1;
 /// Trials of an extrapolated step after which order 2 is tried; the length of a step of order 2, in

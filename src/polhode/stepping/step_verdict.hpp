@@ -20,16 +20,10 @@ struct StepVerdict {
 struct RefusedStep {
   double H = 0.0, error = 0.0;
   int count = 0;
-  double missed = 0.0;  ///< Energy beside its balance, as a part of the largest [-]; 0: not known.
 
   /// Whether a shorter step has hardly a smaller error, which then is not the step's own.
   [[nodiscard]] bool leaves_noise(double length, double now) const {
     return H > 0.0 && now > error * std::pow(length / H, step_control::kFalls);
-  }
-  /// Whether a shorter step hardly misses less energy, so little that it is rounding.
-  [[nodiscard]] bool leaves_imbalance(double length, double now) const {
-    return missed > 0.0 && now <= step_control::kMaxImbalance &&
-           now > missed * std::pow(length / H, step_control::kFalls);
   }
 };
 

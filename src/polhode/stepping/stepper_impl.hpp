@@ -43,6 +43,7 @@ struct Stepper::Impl {
   double tried_from = 0.0;  ///< Length of steps of order 2 that an extrapolated one replaces [s].
   StepReach reach;
   double least_error = kMinError;  ///< Rounding of positions [-].
+  double reach_of_bodies = 0.0;    ///< Largest length among their positions and extents [m].
 
   Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& g,
        const StepControl& c, const LaneKernels& kernels)
@@ -54,6 +55,7 @@ struct Stepper::Impl {
         breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : std::max(kBreaksComposed, c.order - 3)) {
     least_error = std::max(kMinError, kStepRoundOff * extent(s) / s.length_scale()) *
                   (c.order > 2 ? kRoundOffComposed : 1.0);
+    reach_of_bodies = std::max(s.length_scale(), extent(s));
     if (c.extrapolated) table.emplace(s, c.order);
     if (table) return;
     const bool doubled = c.order > 4 && s.rows() > 0;
@@ -184,17 +186,16 @@ struct Stepper::Impl {
 
   std::optional<double> difference_of(const std::vector<double>& list, const State& from,
                                       const State& reached, double H, double of_velocities);
-  using Verdict = StepVerdict;
-  using Refused = RefusedStep;
-
   std::optional<double> composed_error(const State& from, const State& reached, double H);
   [[nodiscard]] double extrapolated_error(const State& from, const State& reached, double H,
-                                          double allowed, Refused& refused) const;
+                                          double allowed) const;
   std::optional<double> error_by_halves(const State& from, const State& reached, double H);
   std::optional<double> error_of_two(const State& from, double dt);
   void find_length(State& state, double way);
   void record(State& state, double H, double verdict);
 
+  using Verdict = StepVerdict;
+  using Refused = RefusedStep;
   Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
 

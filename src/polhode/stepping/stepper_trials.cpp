@@ -57,15 +57,13 @@ std::optional<double> Stepper::Impl::composed_error(const State& from, const Sta
 /// Error estimate of an extrapolated step: the difference of its columns, or the energy that it
 /// gains or loses beside the balance, which is to close to ten tolerances over the run. An undamped
 /// vibration that no member resolves grows by extrapolation, hardly seen in positions. The work of
-/// drives and joints in steps that limits cut short is rounding, and so is what a shorter trial
-/// misses as well.
+/// drives and joints in steps that limits cut short is rounding.
 double Stepper::Impl::extrapolated_error(const State& from, const State& reached, double H,
-                                         double allowed, Refused& refused) const {
+                                         double allowed) const {
   const double difference = table->difference();
   if (difference > allowed || cut_short) return difference;
-  const double missed = single.ledger().imbalance(from, reached);
-  if (refused.leaves_imbalance(H, missed)) return difference;
-  refused.missed = missed;
+  const double rounding = kWorkRounding * from.ledger.p_scale * reach_of_bodies / std::abs(H);
+  const double missed = single.ledger().imbalance(from, reached, rounding);
   return std::max(difference, missed * control.horizon / (kBalanceTolerances * std::abs(H)));
 }
 
@@ -158,7 +156,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   const double allowed = allowed_error(from, H);
   std::optional<double> error;
   if (composed()) {
-    error = extrapolates() ? extrapolated_error(from, reached, H, allowed, refused)
+    error = extrapolates() ? extrapolated_error(from, reached, H, allowed)
                            : composed_error(from, reached, H);
     reached.error_last =
         std::max(std::min(error.value_or(0.0), control.tolerance), kNoiseFades * noise(from));
@@ -207,7 +205,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
     v.factor = shortest ? 1.0 : refused.H / H;
     reached.error_last = std::clamp(refused.error, std::min(v.error, most_noise), most_noise);
   }
-  if (composed() || refused.count > 0) refused = {H, v.error, refused.count, refused.missed};
+  if (composed() || refused.count > 0) refused = {H, v.error, refused.count};
   return v;
 }
 
