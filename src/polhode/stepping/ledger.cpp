@@ -336,7 +336,10 @@ double EnergyLedger::imbalance(const State& from, const State& to, double roundi
   const Balance before = balance(from), after = balance(to);
   const double missed = std::abs(kept(after) - kept(before));
   // A first tiny motion has less energy than others round.
-  if (missed <= rounding + kImbalanceRounding * (after.kinetic + std::abs(after.potential)))
+  const double momenta =
+      std::max(from.ledger.p_scale, std::sqrt(2.0 * total_mass_ * std::max(0.0, after.kinetic)));
+  if (missed <=
+      rounding * momenta + kImbalanceRounding * (after.kinetic + std::abs(after.potential)))
     return 0.0;
   const double scale = std::max(from.ledger.energy_scale, after.kinetic);
   return scale > 0.0 ? missed / scale : 0.0;

@@ -54,7 +54,8 @@ class EnergyLedger {
   void close_step(State& state);
   [[nodiscard]] Balance balance(const State& state) const;
   /// Energy that the balance from one state to the next misses, as a part of the largest energy
-  /// [-]; 0 if it is rounding. @param rounding  Of the works between them [J].
+  /// [-]; 0 if it is rounding. @param rounding  Of the works between them, by magnitude of the
+  /// momenta [m/s].
   [[nodiscard]] double imbalance(const State& from, const State& to, double rounding) const;
 
  private:

@@ -62,8 +62,8 @@ double Stepper::Impl::extrapolated_error(const State& from, const State& reached
                                          double allowed) const {
   const double difference = table->difference();
   if (difference > allowed || cut_short) return difference;
-  const double rounding = kWorkRounding * from.ledger.p_scale * reach_of_bodies / std::abs(H);
-  const double missed = single.ledger().imbalance(from, reached, rounding);
+  const double missed =
+      single.ledger().imbalance(from, reached, kWorkRounding * reach_of_bodies / std::abs(H));
   return std::max(difference, missed * control.horizon / (kBalanceTolerances * std::abs(H)));
 }
 
