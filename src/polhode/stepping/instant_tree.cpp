@@ -7,6 +7,7 @@
 
 #include <polhode/core/assert.hpp>
 #include <polhode/engines/tree_engine.hpp>
+#include <polhode/newton/least_reactions.hpp>
 #include <polhode/stepping/instant_system.hpp>
 #include <polhode/stepping/instant_tree.hpp>
 
@@ -32,6 +33,8 @@ double* doubles(std::vector<T>& v) {
 
 bool InstantTree::takes(const System& system) {
   if (!system.nodes().empty() || system.body_count() == 0) return false;
+  // The redundant part of reactions is rounding over ε, and friction that depends on it with them.
+  if (LeastReactions::may_act(system)) return false;
   return std::none_of(
       system.interactions().begin(), system.interactions().end(),
       [&](const InteractionRef& ref) { return system.traits(ref).coupled_mass != 0.0; });

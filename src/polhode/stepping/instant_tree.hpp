@@ -21,8 +21,8 @@ namespace polhode {
 /// Derivation: docs/theory/elimination_along_the_tree.md, "At an instant".
 class InstantTree {
  public:
-  /// Whether a system can be solved: not with deformable solids, nor with masses that couple the
-  /// accelerations of two bodies.
+  /// Whether a system can be solved: not with deformable solids, masses that couple the
+  /// accelerations of two bodies, or friction that depends on redundant reactions.
   [[nodiscard]] static bool takes(const System& system);
   /// @param system  That it takes.
   explicit InstantTree(const System& system, const LaneKernels& kernels);

@@ -255,6 +255,7 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
   if (certificate.automatic) {
     distance = model.output.every.value_or(a.duration / kAutomaticSamples);
     model.output.every = distance;
+    model.output.between_steps = false;  // an interpolant's error has an order of its own
   }
   const std::vector<double> times = common_times(distance, a.duration);
   const std::optional<double> max_step = a.max_step;
