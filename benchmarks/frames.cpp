@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What does a frame cost, in Newton iterations? After every step of a mechanism a frame is computed
+// Cost of a frame, in Newton iterations. After every step of a mechanism a frame is computed
 // and written: velocities on the rows, accelerations and reactions at the instant, reports of
 // bodies and joints, the results file. Beside the elimination along the tree runs the block LU at
 // the same instants.

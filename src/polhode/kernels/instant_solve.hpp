@@ -390,10 +390,10 @@ POLHODE_INLINE void move_body(const InstantView& v, int slot, int free) {
   row_store(b.X, x);
   JointLanes& lanes = v.lanes[slot / kLanes];
   const int lane = slot % kLanes;
-  if (v.soft) {  // of the softness of the row
+  if (v.soft) {  // multipliers by the softness of the row
     const double stiffness = 1.0 / v.epsilon;
     for (int i = free; i < 6; ++i) lanes.lambda[i - free][lane] = -stiffness * b.p[i];
-  } else if (free < 6) {  // of the balance of the subtree
+  } else if (free < 6) {  // multipliers by the balance of the subtree
     asm volatile("" ::: "memory");
     const Row w = combine<6>(b.X, b.A) - row_load(b.rho);
     alignas(64) double force[8];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -101,7 +100,8 @@ struct BodyJet {
 
 using Vec4 = Eigen::Vector4d;
 
-Vec4 product(const Vec4& p, const Vec3& V) {  // of a quaternion (w, x, y, z) and a vector
+/// Product of a quaternion (w, x, y, z) and a vector.
+Vec4 product(const Vec4& p, const Vec3& V) {
   const Vec3 v = p.tail<3>();
   Vec4 result;
   result << -v.dot(V), p[0] * V + v.cross(V);
@@ -388,6 +388,7 @@ struct DenseOutput::Impl {
   /// that of the other nodes too, as it counts angles and follows drives exactly; else, of works
   /// and impulses, polynomials through values and rates.
   void remember(Window& w, State& state) const {
+    if (state.history.empty()) return;
     const auto memory_at = [&](const State& there) {
       return memory_after(system, w.first->state, there, mean_multipliers(w, there.t), method.ga);
     };

@@ -58,7 +58,7 @@ double equal_interval(const std::vector<std::array<double, 2>>& points, double e
   return interval;
 }
 
-/// What one <Control> asks for.
+/// Settings of one <Control>.
 struct Asked {
   double step = 1.0;       ///< [s]
   double every = 0.0;      ///< Interval of output [s]; 0: none.

@@ -52,8 +52,8 @@ struct FebStep {
   std::vector<std::string> items;  ///< Joints and loads that act in this step alone.
 };
 
-/// Where a section may stand in a file of several steps: not in them, in the first one, or in any,
-/// so that its joints and loads are switched, or its values are zero in other steps.
+/// Places of a section in a file of several steps: outside them, in the first one, in any with
+/// joints and loads that are switched, or in any with values that are zero in other steps.
 enum class FebIn : unsigned char { file, start, step, values };
 
 /// All that is read of an FEBio file, and the parts of the model that come from it.
@@ -74,7 +74,7 @@ struct FebModel {
   Vec3 gravity = Vec3::Zero();
   SourceNode joints, loads;
   std::set<std::string> joint_names, load_names;
-  /// Of each connector "joint" or "load", and its name; "" if it became none.
+  /// Kind, "joint" or "load", and name of each connector; "" if it became none.
   std::vector<std::pair<std::string, std::string>> connectors;
 
   /// Reads all sections of a name, in the file and in its steps.
