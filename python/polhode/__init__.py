@@ -24,6 +24,7 @@ from ._native import version as __version__
 
 if TYPE_CHECKING:
     from . import rotations
+    from ._batch import Batch, batch
     from ._derivatives import Uncertainty
     from ._design import Minimum, minimize
     from ._equations import StepEquations, step_equations
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
 # Loaded at first use: NumPy takes longer to import than everything else.
 _LATER = {
+    "_batch": ["Batch", "batch"],
     "_derivatives": ["Uncertainty"],
     "_design": ["Minimum", "minimize"],
     "_equations": ["StepEquations", "step_equations"],
@@ -59,9 +61,9 @@ for _error in (Fault, ModelError, NotConverged, NotReached):
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
-    "BodyReading", "Experiment", "Fault", "Fit", "Gradient", "Matrices", "Minimum", "Mode", "Model", "ModelError",
+    "Batch", "BodyReading", "Experiment", "Fault", "Fit", "Gradient", "Matrices", "Minimum", "Mode", "Model", "ModelError",
     "Modes", "NotConverged", "NotReached", "Pose", "Result", "Simulation", "StateFunction", "StateSpace", "Step",
-    "StepEquations", "Uncertainty", "__version__", "fit", "from_text", "gradient", "inverse_dynamics",
+    "StepEquations", "Uncertainty", "__version__", "batch", "fit", "from_text", "gradient", "inverse_dynamics",
     "jax_function", "linearize", "load", "matrices", "minimize", "modes", "open", "rotations", "run", "spin_modes",
     "step_equations", "sweep", "torch_function",
 ]

@@ -104,6 +104,20 @@ def measure(result: Result, text: str) -> "dict[str, float]":
                      + f" Write {_FORMS}")
 
 
+def channel_of(text: str) -> str:
+    """The channel that a measure reads, without .size."""
+    call = _CALL.fullmatch(text)
+    name = text
+    if call:
+        function, name = call.group(1), call.group(2)
+        if function == "at":
+            name = name.rpartition(",")[0]
+        elif function == "first":
+            parts = _FIRST.fullmatch(name.strip())
+            name = parts.group(1) if parts else name
+    return name.strip().removesuffix(".size")
+
+
 def _first(result: Result, text: str, inside: str) -> float:
     """First time at which a channel is above or below a value."""
     parts = _FIRST.fullmatch(inside.strip())

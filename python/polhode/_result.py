@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _native
 from ._derivatives import Differentiable
+from ._plot import components_of, plot
 from ._stores import FileStore, Store
 from ._tree import counted
 from .rotations import matrix_from_quaternion
@@ -404,7 +405,7 @@ class Result(Differentiable):
         for name in self._expand(channels):
             array = np.asarray(self[name])
             flat = array.reshape(len(array), -1)
-            labels = _components(array.shape[1:])
+            labels = components_of(array.shape[1:])
             for k, label in enumerate(labels):
                 columns[name + label] = flat[:, k]
         frame = pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
@@ -437,7 +438,7 @@ class Result(Differentiable):
                 continue
             array = np.asarray(self[name], dtype=float)
             flat = array.reshape(len(array), -1)
-            for k, label in enumerate(_components(array.shape[1:])):
+            for k, label in enumerate(components_of(array.shape[1:])):
                 names.append(name + label)
                 units.append(self.unit(name))
                 columns.append(flat[:, k])
@@ -447,27 +448,8 @@ class Result(Differentiable):
 
     def plot(self, *channels: str, axes: Any = None) -> Any:
         """Draws channels over time with matplotlib, one panel each: r.plot("energy", "joints.A.force").
-        A group draws all its channels in one panel. Returns the figure."""
-        from matplotlib import pyplot
-
-        wanted = channels or ("energy",)
-        if axes is None:
-            figure, axes = pyplot.subplots(len(wanted), 1, sharex=True, squeeze=False, layout="constrained")
-            axes = axes[:, 0]
-        panels = np.atleast_1d(np.asarray(axes, dtype=object))
-        for panel, name in zip(panels, wanted):
-            found = self[name]
-            parts = [f"{name}.{k}" for k in found] if isinstance(found, Group) else [name]
-            for part in parts:
-                array = np.asarray(self[part])
-                flat = array.reshape(len(array), -1)
-                for k, label in enumerate(_components(array.shape[1:])):
-                    panel.plot(self.times(part), flat[:, k], label=(part[len(name) + 1 :] + label).lstrip(".") or None)
-            panel.set_ylabel(f"{name} [{self.unit(parts[0])}]")
-            if panel.get_legend_handles_labels()[0]:
-                panel.legend(loc="best", fontsize="small")
-        panels[-1].set_xlabel("time [s]")
-        return panels[0].figure
+        A group draws all its channels in one panel, a probe its columns, those of one unit in one. Returns the figure."""
+        return plot(self, channels or ("energy",), axes)
 
     def _expand(self, channels: "tuple[str, ...]") -> "list[str]":
         if not channels:
@@ -499,14 +481,6 @@ class Result(Differentiable):
 def in_body_axes(vectors: Any, orientations: Any) -> Any:
     """Vectors (3,) or (T, 3) of the world along the axes of bodies with these quaternions (4,) or (T, 4)."""
     return np.einsum("...ij,...i->...j", matrix_from_quaternion(orientations), vectors)
-
-
-def _components(shape: "tuple[int, ...]") -> "list[str]":
-    if shape in ((3,), (4,)):
-        return ["." + c for c in ("xyz" if shape == (3,) else "wxyz")]
-    if shape in ((), (1,)):
-        return [""]
-    return ["".join(f".{i}" for i in index) for index in np.ndindex(*shape)]
 
 
 def open(path: "Union[str, os.PathLike[str]]") -> Result:

@@ -17,4 +17,5 @@ NB_MODULE(_native, m) {
   polhode::python::bind_equations(m);
   polhode::python::bind_gradient(m);
   polhode::python::bind_workers(m);
+  polhode::python::bind_batch(m);
 }

@@ -32,6 +32,7 @@ void bind_modes(nb::module_& m);
 void bind_equations(nb::module_& m);
 void bind_gradient(nb::module_& m);
 void bind_workers(nb::module_& m);
+void bind_batch(nb::module_& m);
 
 using Array = nb::ndarray<nb::numpy, double>;
 using Integers = nb::ndarray<nb::numpy, std::int64_t>;

@@ -167,6 +167,10 @@ def test_results_go_to_other_libraries(pendulum: polhode.Model) -> None:
     assert len(figure.axes[1].lines) == 3
     one = r.plot("bodies.arm.position.z").axes[0]  # a component, with the unit of its vector
     assert one.get_ylabel() == "bodies.arm.position.z [m]" and len(one.lines) == 1
+    pendulum.add_probe("tip", body="arm")
+    tip = polhode.run(pendulum).plot("probes.tip")  # columns of one unit in one panel
+    assert [a.get_ylabel() for a in tip.axes] == ["probes.tip [m]", "probes.tip [m/s]", "probes.tip [m/s^2]"]
+    assert [line.get_label() for line in tip.axes[1].lines] == ["vx", "vy", "vz"]
     assert r.unit("bodies.arm.orientation.w") == r.unit("bodies.arm.orientation")
     assert np.array_equal(figure.axes[1].lines[2].get_ydata(), r.joints["hinge"].force[:, 2])
 

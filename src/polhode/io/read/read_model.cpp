@@ -5,8 +5,8 @@
 
 #include <polhode/compile/contact_sides.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/io/read/parsed_model.hpp>
 #include <polhode/io/read/read_context.hpp>
-#include <polhode/io/read/read_import.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 namespace polhode::io {
@@ -222,33 +222,52 @@ void check_model(ReadContext& context, const SourceNode& root) {
   }
 }
 
-namespace {
+struct ParsedModel::Parsed {
+  std::string file, folder;
+  Overrides overrides;  ///< That are still to be applied.
+  SourceTree tree;
+};
 
-Model read_source(ModelText source) {
-  SourceTree tree = SourceTree::parse(std::move(source.text), std::move(source.shown));
+ParsedModel::ParsedModel(std::string text, const std::string& filename, Overrides overrides)
+    : ParsedModel(ModelText{std::move(text), filename, filename, std::move(overrides)}) {}
+
+ParsedModel::ParsedModel(ModelText source)
+    : parsed_(std::make_unique<Parsed>(
+          Parsed{.file = source.file,
+                 .folder = std::filesystem::path(source.file).parent_path().string(),
+                 .overrides = std::move(source.overrides),
+                 .tree = SourceTree::parse(std::move(source.text), std::move(source.shown))})) {
+  Parsed& p = *parsed_;
+  Diagnostics diagnostics(p.tree.source());
+  static_cast<void>(expand_import(p.tree, p.folder, p.folder, p.overrides, diagnostics));
+  apply_overrides(p.tree, p.overrides, diagnostics);
+  diagnostics.throw_if_any();
+}
+
+ParsedModel::~ParsedModel() = default;
+ParsedModel::ParsedModel(ParsedModel&&) noexcept = default;
+
+Model ParsedModel::read(const Overrides& further) const {
+  SourceTree tree = parsed_->tree;
   Diagnostics diagnostics(tree.source());
-  const std::string folder = std::filesystem::path(source.file).parent_path().string();
-  static_cast<void>(expand_import(tree, folder, folder, source.overrides, diagnostics));
-  apply_overrides(tree, source.overrides, diagnostics);
+  apply_overrides(tree, further, diagnostics);
   diagnostics.throw_if_any();
   ReadContext context{.tree = tree, .diagnostics = diagnostics};
-  context.folder = folder;
-  context.model.source_file = source.file;
-  context.source_file = source.file;
-  context.files_above = {full_path(source.file)};
+  context.folder = parsed_->folder;
+  context.model.source_file = parsed_->file;
+  context.source_file = parsed_->file;
+  context.files_above = {full_path(parsed_->file)};
   read_root(context, tree.root());
   diagnostics.throw_if_any();
   return std::move(context.model);
 }
 
-}  // namespace
-
 Model read_model_text(std::string text, const std::string& filename, const Overrides& overrides) {
-  return read_source({std::move(text), filename, filename, overrides});
+  return ParsedModel(std::move(text), filename, overrides).read();
 }
 
 Model read_model(const std::filesystem::path& file, const Overrides& overrides) {
-  return read_source(model_text_of(file.string(), overrides));
+  return ParsedModel(model_text_of(file.string(), overrides)).read();
 }
 
 }  // namespace polhode::io

@@ -357,6 +357,13 @@ void mark_origin(SourceNode& node, int origin) {
   for (SourceNode& child : node.children) mark_origin(child, origin);
 }
 
+/// Whether a value is a number without a unit, for which YAML has nothing but its text.
+bool is_bare_number(const std::string& value) {
+  const std::size_t first = value.starts_with('-') ? 1 : 0;
+  return first < value.size() && value[first] >= '0' && value[first] <= '9' &&
+         value.find_first_not_of("0123456789.eE+-") == std::string::npos;
+}
+
 std::vector<std::string> split_path(const std::string& path) {
   std::vector<std::string> parts(1);
   for (const char c : path) {
@@ -383,12 +390,17 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
   const int origin = static_cast<int>(overrides_.size());
   const SourceLocation place{overrides_.back(), 0, 0};
   SourceNode replacement;
-  try {
-    const SourceText text("", value);
-    parse_into(text, {}, replacement);
-  } catch (const SourceStop& stop) {
-    diagnostics.add(place, path, stop.what, stop.hint);
-    return;
+  if (is_bare_number(value)) {  // as most are, in studies of thousands of runs
+    replacement.kind = SourceNode::Kind::kText;
+    replacement.text = value;
+  } else {
+    try {
+      const SourceText text("", value);
+      parse_into(text, {}, replacement);
+    } catch (const SourceStop& stop) {
+      diagnostics.add(place, path, stop.what, stop.hint);
+      return;
+    }
   }
   mark_origin(replacement, origin);
 
