@@ -18,7 +18,7 @@ namespace polhode {
 namespace {
 
 /// Difference of times, as a part of the output interval, below which they are equal.
-constexpr double kSameTime = 1e-9;
+constexpr double kSameFrame = 1e-9;
 
 /// Times of the frames of every run: multiples of the output interval, and the end.
 std::vector<double> frame_times(const Model& model) {
@@ -33,12 +33,12 @@ std::vector<double> frame_times(const Model& model) {
                      "Give the interval of the frames, as all runs have the same");
   if (a.step) {
     const double steps = *every / *a.step;
-    if (std::abs(steps - std::round(steps)) > kSameTime * steps)
+    if (std::abs(steps - std::round(steps)) > kSameFrame * steps)
       throw InputError("output.every", format("is {:.6g} steps", steps),
                        "Give a multiple of analysis.step, so that frames are ends of steps");
   }
   std::vector<double> times;
-  for (std::int64_t k = 0; static_cast<double>(k) * *every < a.duration - kSameTime * *every; ++k)
+  for (std::int64_t k = 0; static_cast<double>(k) * *every < a.duration - kSameFrame * *every; ++k)
     times.push_back(static_cast<double>(k) * *every);
   times.push_back(a.duration);
   return times;
@@ -210,7 +210,7 @@ class BatchWork {
   /// them.
   [[nodiscard]] std::size_t frame_at(double t) const {
     const std::vector<double>& times = batch_.times;
-    const double same = kSameTime * times[1];
+    const double same = kSameFrame * times[1];
     const auto at = std::lower_bound(times.begin(), times.end(), t - same);
     return at != times.end() && *at <= t + same ? static_cast<std::size_t>(at - times.begin())
                                                 : times.size();
