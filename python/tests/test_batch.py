@@ -21,7 +21,7 @@ def pendulum(**analysis):
 def test_energy_of_each_run_is_conserved():
     lengths = np.linspace(0.5, 2, 70)
     channels = ["bodies.rod.position", "bodies.rod.velocity", "bodies.rod.angular_velocity", "probes.end.z"]
-    for step in ("20 ms", "5 ms", "0.5 ms"):
+    for step in ("25 ms", "5 ms", "0.5 ms"):
         b = polhode.batch(pendulum(step=step), {"variables.L": lengths}, channels)
         assert len(b) == 70 and b.finished.all() and not b.alone.any() and b.why_alone == ""
         assert b["bodies.rod.position"].shape == (70, 21, 3) and b["probes.end.z"].shape == (70, 21)
@@ -29,7 +29,7 @@ def test_energy_of_each_run_is_conserved():
         v, w = b["bodies.rod.velocity.size"], b["bodies.rod.angular_velocity.y"]
         energy = 0.5 * v**2 + lengths[:, None]**2 / 24 * w**2 + 9.81 * b["bodies.rod.position.z"]
         # Velocities are projected onto the hinge: an error of the order of the step.
-        tolerance = {"20 ms": 1e-3, "5 ms": 1e-5, "0.5 ms": 1e-9}[step]
+        tolerance = {"25 ms": 1e-3, "5 ms": 1e-5, "0.5 ms": 1e-9}[step]
         assert np.abs(energy / energy[:, :1] - 1).max() < tolerance
         assert np.allclose(b["probes.end.z"], 2 * b["bodies.rod.position.z"], atol=1e-12)
 
@@ -71,10 +71,10 @@ def test_numbers_do_not_depend_on_threads():
 
 
 def test_lists_vary_as_well():
-    gravity = np.array([[0, 0, -9.81], [0, 0, -1.62], [1.0, 0, -9.81]])
+    gravity = np.array([[0, 0, -9.81], [0, 0, -1.62], [1.0, 0, -9.81], [0, 0, -9.81]])
     b = polhode.batch(pendulum(), {"gravity": gravity, "bodies.rod.mass": 2}, ["bodies.rod.position", "joints.hinge.rates"])
-    assert b.alone.tolist() == [False, True, True]  # gravity is one for all that are side by side
-    for k in range(3):
+    assert b.alone.tolist() == [False, True, True, False]  # gravity is one for all that are side by side
+    for k in range(4):
         r = polhode.run(pendulum(), overrides={"gravity": gravity[k].tolist(), "bodies.rod.mass": 2})
         assert np.allclose(b["bodies.rod.position"][k], r.bodies["rod"].position, atol=1e-12)
         assert np.allclose(b["joints.hinge.rates.0"][k], r["joints.hinge.rates"][:, 0], atol=1e-9)

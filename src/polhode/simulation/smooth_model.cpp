@@ -18,18 +18,14 @@ constexpr double kLawRange = 0x1p20;
 constexpr std::array<std::string_view, 4> kNotCombined = {"point_on_curve", "curve_on_curve",
                                                           "point_on_surface", "rolling"};
 
-/// Whether a force with a jump in this derivative keeps the order: a step across the jump has an
-/// error H^(derivative + 2) in positions, and a run crosses it a bounded number of times.
-bool smooth_enough(int derivative, int order) { return derivative + 2 >= order; }
-
 const std::string kOrderTwo = "Use order: 2 for this model";
 
 /// Search for the first part that is not smooth.
 class Search {
  public:
-  explicit Search(int order) : order_(order) {}
-  void joints(const Model& model, bool leaves_stops);
-  void interactions(const System& system, bool leaves_stops);
+  Search(int order, bool automatic) : order_(order), automatic_(automatic) {}
+  void joints(const Model& model);
+  void interactions(const System& system);
   void controllers(const Model& model);
   void load(const LoadSpec& load);
   void cable(const CableLineSpec& cable);
@@ -41,8 +37,17 @@ class Search {
     if (!found_) found_ = {what, why, hint};
   }
   void law(const LoadSpec& load, const std::string& key, const TimeFunction& law);
+  void kinks_of(const LoadSpec& load);
+  void kinks_of(const CableLineSpec& cable);
+  /// Whether a force with a jump in this derivative keeps the order: a step across the jump has an
+  /// error H^(derivative + 2) in positions, and a run crosses it a bounded number of times. Where
+  /// the error is held, any continuous force does.
+  [[nodiscard]] bool smooth_enough(int derivative) const {
+    return derivative + 2 >= (automatic_ ? 3 : order_);
+  }
 
   int order_;
+  bool automatic_;
   std::optional<NotSmooth> found_;
 };
 
@@ -51,7 +56,7 @@ void Search::law(const LoadSpec& load, const std::string& key, const TimeFunctio
   for (TimeBreak b = law.next_break(-kLawRange, kLawRange); b.exists() && worst > 0;
        b = law.next_break(b.t, kLawRange))
     worst = std::min(worst, b.derivative);
-  if (!smooth_enough(worst, order_))
+  if (!smooth_enough(worst))
     refuse(format("{} of '{}'", key, load.name),
            worst == 0 ? "jumps" : format("has kinks in its derivative {}", worst),
            "Use a smooth expression, or a lower order; order: 2 always runs");
@@ -61,6 +66,13 @@ void Search::load(const LoadSpec& load) {
   if (std::find(kNotCombined.begin(), kNotCombined.end(), load.type) != kNotCombined.end())
     refuse(format("'{}' is a {}", load.name, load.type), "whose state it does not combine",
            kOrderTwo);
+  if (!automatic_) kinks_of(load);
+  for (const auto& [key, of_key] : load.laws)
+    if (of_key) law(load, key, *of_key);
+}
+
+/// Kinks that a load with a fixed step must not have.
+void Search::kinks_of(const LoadSpec& load) {
   const auto given = [&](const char* key) {
     const auto at = load.parameters.find(key);
     return at != load.parameters.end() && at->second != 0.0;
@@ -71,11 +83,9 @@ void Search::load(const LoadSpec& load) {
   if (given("max_moment") || given("max_force"))
     refuse(format("the servo '{}' has a limit", load.name), "at which its force has a kink",
            "Leave the limit out if it is not reached, or use order: 2");
-  if (given("quadratic") && !smooth_enough(2, order_))
+  if (given("quadratic") && !smooth_enough(2))
     refuse(format("'{}' is quadratic", load.name), "with a kink of the second derivative at zero",
            "Use order: 4 or 2");
-  for (const auto& [key, of_key] : load.laws)
-    if (of_key) law(load, key, *of_key);
 }
 
 void Search::cable(const CableLineSpec& cable) {
@@ -83,6 +93,10 @@ void Search::cable(const CableLineSpec& cable) {
     refuse(format("the cable '{}' has friction", cable.name), "which is not smooth", kOrderTwo);
   if (cable.contact)
     refuse(format("the cable '{}' has contact", cable.name), "which is not smooth", kOrderTwo);
+  if (!automatic_) kinks_of(cable);
+}
+
+void Search::kinks_of(const CableLineSpec& cable) {
   if (cable.muscle)
     refuse(format("'{}' is a muscle", cable.name), "whose curves have kinks", kOrderTwo);
   if (!cable.around.empty())
@@ -93,12 +107,12 @@ void Search::cable(const CableLineSpec& cable) {
            "Write tension_only: false if it stays taut, or use order: 2");
 }
 
-void Search::joints(const Model& model, bool leaves_stops) {
+void Search::joints(const Model& model) {
   for (const JointSpec& joint : model.joints) {
     if (joint.friction)
       refuse(format("the joint '{}' has dry friction", joint.name), "which is not smooth",
              kOrderTwo);
-    if ((joint.limits || joint.angle_limits || joint.type == "slack_link") && !leaves_stops)
+    if ((joint.limits || joint.angle_limits || joint.type == "slack_link") && !automatic_)
       refuse(format("the joint '{}' has stops", joint.name), "at which the velocity jumps",
              "Give a tolerance instead of a step, or use order: 2");
     if (joint.enforcement)
@@ -107,10 +121,10 @@ void Search::joints(const Model& model, bool leaves_stops) {
   }
 }
 
-void Search::interactions(const System& system, bool leaves_stops) {
+void Search::interactions(const System& system) {
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
-    if (traits.set_valued || (traits.has_barrier && !leaves_stops) || traits.compliant ||
+    if (traits.set_valued || (traits.has_barrier && !automatic_) || traits.compliant ||
         traits.unilateral > 0)
       refuse(format("the {} '{}'", system.group(ref.group).kind(), system.name(ref)),
              "is not smooth", kOrderTwo);
@@ -138,15 +152,15 @@ void Search::elements(const Nodes& nodes) {
 }  // namespace
 
 std::optional<NotSmooth> not_smooth(const Model& model, const System& system, int order,
-                                    bool leaves_stops) {
+                                    bool automatic) {
   if (model.contacts.present || system.contacts())
     return NotSmooth{"the model has contacts", "which are not smooth", kOrderTwo};
-  Search search(order);
+  Search search(order, automatic);
   search.controllers(model);
-  search.joints(model, leaves_stops);
+  search.joints(model);
   for (const LoadSpec& load : model.loads) search.load(load);
   for (const CableLineSpec& cable : model.cables) search.cable(cable);
-  search.interactions(system, leaves_stops);
+  search.interactions(system);
   search.elements(system.nodes());
   return search.found();
 }

@@ -126,15 +126,22 @@ class BatchWork {
 
   /// Runs of one group in one system. @returns false if some of them are no plain runs.
   bool take_together(const std::vector<Member>& members) {
-    std::vector<Model> models;
-    std::vector<std::size_t> runs;
-    for (const Member& member : members) {
-      models.push_back(member.model);
-      runs.push_back(member.run);
-    }
     try {
+      std::vector<Model> models;
+      std::vector<std::size_t> runs;
+      std::vector<ProbeSpec> specs;
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        models.push_back(members[k].model);
+        runs.push_back(members[k].run);
+        for (ProbeSpec spec : specs_of(members[k].model)) {
+          spec.target = name_side_by_side(k, spec.target);
+          if (spec.seen_from != kGround)
+            spec.seen_from += static_cast<int>(k * first_.bodies.size());
+          specs.push_back(std::move(spec));
+        }
+      }
       Simulation simulation(side_by_side(std::move(models)));
-      const RunSummary summary = observe(simulation, runs, true);
+      const RunSummary summary = observe(simulation, runs, specs);
       if (stopped()) return true;
       // A drift of one run is a part of the whole system's energy or momentum.
       const double allowed =
@@ -142,18 +149,19 @@ class BatchWork {
       if (summary.end != RunEnd::finished || summary.rejected_steps > 0 || !summary.trusted() ||
           summary.energy_drift > allowed)
         return false;
+      for (const std::size_t run : runs) batch_.alone[run] = 0;
+      return true;
     } catch (const std::exception&) {
       return false;  // which run, and why, each alone will say
     }
-    for (const std::size_t run : runs) batch_.alone[run] = 0;
-    return true;
   }
 
   void take_alone(std::size_t run, Model model) {
     if (stopped()) return;
     try {
+      const std::vector<ProbeSpec> specs = specs_of(model);
       Simulation simulation(std::move(model));
-      const RunSummary summary = observe(simulation, {run}, false);
+      const RunSummary summary = observe(simulation, {run}, specs);
       if (summary.end == RunEnd::not_converged) batch_.messages[run] = summary.message;
       for (const std::string& reason : summary.distrust)
         batch_.messages[run] += (batch_.messages[run].empty() ? "not trusted: " : " ") + reason;
@@ -162,17 +170,21 @@ class BatchWork {
     }
   }
 
-  RunSummary observe(Simulation& simulation, const std::vector<std::size_t>& runs, bool together) {
+  /// What is read of a run: probes are those of its own model, as their points may vary.
+  [[nodiscard]] std::vector<ProbeSpec> specs_of(const Model& model) const {
+    std::vector<ProbeSpec> specs = specs_;
+    for (ProbeSpec& spec : specs)
+      if (!spec.name.empty())
+        spec = model.output.probes[static_cast<std::size_t>(model.probe_index(spec.name))];
+    return specs;
+  }
+
+  /// @param specs  What is read of each run, one run after the other.
+  RunSummary observe(Simulation& simulation, const std::vector<std::size_t>& runs,
+                     const std::vector<ProbeSpec>& specs) {
     std::vector<ProbeTarget> targets;
-    const int bodies = static_cast<int>(first_.bodies.size());
-    for (std::size_t k = 0; k < runs.size(); ++k)
-      for (ProbeSpec spec : specs_) {
-        if (together) {
-          spec.target = name_side_by_side(k, spec.target);
-          if (spec.seen_from != kGround) spec.seen_from += static_cast<int>(k) * bodies;
-        }
-        targets.push_back(probe_target(simulation, spec, "the channel"));
-      }
+    for (const ProbeSpec& spec : specs)
+      targets.push_back(probe_target(simulation, spec, "the channel"));
     forget(runs);
     return simulation.run(
         [&](const Simulation& s) {
@@ -222,7 +234,7 @@ class BatchWork {
   Model first_;
   Batch batch_;
   std::vector<BatchChannel> channels_;
-  std::vector<ProbeSpec> specs_;      ///< Of the objects that are read, each once.
+  std::vector<ProbeSpec> specs_;      ///< What is read, each object once; of the first run.
   std::vector<std::size_t> objects_;  ///< By channel.
 };
 

@@ -12,7 +12,7 @@ namespace polhode {
 struct BatchChannel {
   std::string text;                    ///< As asked: "bodies.rod.position", "probes.tip.x".
   std::string unit;                    ///< Of its first number; "-" for none.
-  ProbeSpec of{};                      ///< The object; its name and its rate are irrelevant.
+  ProbeSpec of{};                      ///< The object; only a probe of the model has a name.
   std::vector<std::size_t> columns{};  ///< Among those of probe_columns(), without the time.
   bool one = false;                    ///< A single number, not a list of one.
 };
