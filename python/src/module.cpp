@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/threads.hpp>
 #include <polhode/core/version.hpp>
 
 #include "parts.hpp"
@@ -6,6 +7,7 @@
 NB_MODULE(_native, m) {
   m.doc() = "Engine of the package polhode. Use that package.";
   m.attr("version") = polhode::version();
+  m.def("set_threads", &polhode::set_threads_of_runs, nanobind::arg("threads"));
   polhode::python::bind_errors(m);
   polhode::python::bind_model(m);
   polhode::python::bind_held_loads(m);

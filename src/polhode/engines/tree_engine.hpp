@@ -20,6 +20,9 @@ class TreeEngine final : public NewtonEngine {
   explicit TreeEngine(const System& system, const std::string& isa = "automatic");
 
   [[nodiscard]] std::string name() const override { return "tree"; }
+  [[nodiscard]] std::unique_ptr<NewtonEngine> another() const override {
+    return std::make_unique<TreeEngine>(*system_, kernels_->name);
+  }
   void begin_step(const State& state, Trial& trial) override;
   void set_proximal(double epsilon) override { view_.proximal = epsilon; }
   void store_multipliers(Trial& trial) override;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include <polhode/equations/constraint_check.hpp>
@@ -23,6 +24,9 @@ class NewtonEngine {
  public:
   virtual ~NewtonEngine() = default;
   [[nodiscard]] virtual std::string name() const = 0;
+  /// An engine of its own for another thread, which solves the same steps with the same bits; null
+  /// if there cannot be one.
+  [[nodiscard]] virtual std::unique_ptr<NewtonEngine> another() const { return nullptr; }
   /// Called once per step when the trial was predicted.
   virtual void begin_step(const State& state, Trial& trial) = 0;
   /// Called when the trial was set back to an iterate of the same step: updates derived data.

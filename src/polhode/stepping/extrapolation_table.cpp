@@ -7,6 +7,7 @@
 #include <polhode/math/quaternion.hpp>
 #include <polhode/stepping/extrapolation_table.hpp>
 #include <polhode/stepping/instant.hpp>
+#include <polhode/stepping/member_threads.hpp>
 #include <polhode/stepping/step_control.hpp>
 #include <polhode/stepping/step_error.hpp>
 
@@ -29,12 +30,14 @@ std::vector<double> weights_of(const std::vector<int>& counts, std::size_t first
 
 }  // namespace
 
-ExtrapolationTable::ExtrapolationTable(const System& system, int order)
+ExtrapolationTable::ExtrapolationTable(const System& system, int order, const SingleStep& single,
+                                       int threads)
     : system_(&system),
       counts_(extrapolation_substeps(order)),
       combined_history_(system.initial_state().history.size(), 0),
       members_(counts_.size()),
-      solver_(std::make_unique<InstantSolver>(system)) {
+      solver_(std::make_unique<InstantSolver>(system)),
+      threads_(MemberThreads::make(single, std::min(threads, static_cast<int>(counts_.size())))) {
   // Turns that are counted now and then, and the memories of events and controllers, which a step
   // does not change, are those of one member.
   for (const InteractionRef& ref : system.interactions()) {
@@ -45,6 +48,8 @@ ExtrapolationTable::ExtrapolationTable(const System& system, int order)
 }
 
 ExtrapolationTable::~ExtrapolationTable() = default;
+
+double ExtrapolationTable::waited() const { return threads_ ? threads_->waited() : 0.0; }
 
 NewtonReport ExtrapolationTable::advance(State& state, const std::vector<double>& parts, double H,
                                          SingleStep& single, const NewtonOptions& newton,
@@ -59,27 +64,6 @@ NewtonReport ExtrapolationTable::advance(State& state, const std::vector<double>
   return report;
 }
 
-NewtonReport ExtrapolationTable::take_member(State& member, int steps, double H, SingleStep& single,
-                                             const NewtonOptions& newton, bool fresh) {
-  NewtonReport report;
-  int iterations = 0;
-  bool hard = false;
-  single.ledger().forget();
-  for (int k = 0; k < steps; ++k) {
-    SingleStep::Predictor predictor;
-    predictor.degree = fresh && k == 0 ? -1 : step_control::kMemberDegree;
-    predictor.watch_stops = true;
-    report = single.take(member, H / steps, newton, predictor);
-    iterations += report.iterations;
-    hard = hard || report.hard;
-    met_stop_ = report.converged && (single.stopped() || single.jumped());
-    if (!report.converged || met_stop_) break;
-  }
-  report.iterations = iterations;
-  report.hard = hard;
-  return report;
-}
-
 NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& single,
                                          const NewtonOptions& newton, const Way& way) {
   NewtonReport report;
@@ -87,9 +71,20 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   bool hard = false;
   const auto columns = static_cast<std::size_t>(way.columns);
   difference_before_ = 0.0;
+  std::vector<MemberEnd> ends;
+  if (threads_) {
+    std::fill_n(members_.begin(), columns, state);
+    ends = threads_->take({members_.data(), columns}, counts_, H, single, newton, way.fresh);
+  }
   for (std::size_t j = 0; j < columns; ++j) {
-    members_[j] = state;
-    report = take_member(members_[j], counts_[j], H, single, newton, way.fresh);
+    MemberEnd end = threads_ ? std::move(ends[j]) : MemberEnd{};
+    if (!threads_ || !end.report.converged) {
+      // One that fails is taken again for what its single step then knows about it.
+      members_[j] = state;
+      end = take_member(members_[j], counts_[j], H, single, newton, way.fresh);
+    }
+    report = std::move(end.report);
+    met_stop_ = end.met_stop;
     report.iterations = iterations += report.iterations;
     report.hard = hard = hard || report.hard;
     bool hopeless = false;

@@ -10,13 +10,16 @@
 namespace polhode {
 
 class InstantSolver;
+class MemberThreads;
 
 /// A step as the extrapolation of members that divide it into 2, 4, ... equal steps: order 4 to 12
 /// by steps forward in time alone, also where the model dissipates. @eq{extrapolated-step}
 class ExtrapolationTable {
  public:
   /// @param order  The highest one: 4, 6, 8, 10 or 12.
-  ExtrapolationTable(const System& system, int order);
+  /// @param threads  Largest number of members that are computed at a time, which needs an engine
+  /// for each; results have the same bits with any number.
+  ExtrapolationTable(const System& system, int order, const SingleStep& single, int threads = 1);
   ~ExtrapolationTable();
 
   /// How a step is taken.
@@ -37,6 +40,8 @@ class ExtrapolationTable {
   [[nodiscard]] double difference_before() const { return difference_before_; }
   /// The body with the largest difference; −1: not known.
   [[nodiscard]] int worst_body(double H) const;
+  /// Time spent waiting for members of other threads [s].
+  [[nodiscard]] double waited() const;
   /// Whether a joint stop was met; then the step was given up.
   [[nodiscard]] bool met_stop() const { return met_stop_; }
   [[nodiscard]] int most_columns() const { return static_cast<int>(counts_.size()); }
@@ -46,9 +51,6 @@ class ExtrapolationTable {
  private:
   NewtonReport advance(State& state, double H, SingleStep& single, const NewtonOptions& newton,
                        const Way& way);
-  /// Takes the steps of a member, which starts at the state.
-  NewtonReport take_member(State& member, int steps, double H, SingleStep& single,
-                           const NewtonOptions& newton, bool fresh);
   /// Combines motions and internal variables of members first to last−1, about member last−1.
   void combine(std::size_t first, std::size_t last, State& out) const;
   /// Difference between the columns of members 0 to last−1 and 1 to last−1. Both results are kept.
@@ -64,6 +66,7 @@ class ExtrapolationTable {
   std::vector<State> members_;
   State result_, other_;  ///< The last column and the one before.
   std::unique_ptr<InstantSolver> solver_;
+  std::unique_ptr<MemberThreads> threads_;  ///< Null: one thread.
   double difference_ = 0.0, difference_before_ = 0.0;
   bool met_stop_ = false;
 };

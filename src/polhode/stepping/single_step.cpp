@@ -86,6 +86,13 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
   }
 }
 
+std::unique_ptr<SingleStep> SingleStep::another() const {
+  std::unique_ptr<NewtonEngine> engine = engine_->another();
+  if (!engine) return nullptr;
+  const StepContext& c = trial_.context;
+  return std::make_unique<SingleStep>(*system_, std::move(engine), c.ga, *kernels_, c.conserving);
+}
+
 void SingleStep::predict(const State& state, const Predictor& predictor) {
   const StepContext& c = trial_.context;
   const PredictWeights weights = predictor.degree < 0

@@ -21,6 +21,9 @@ class SingleStep {
   SingleStep(const System& system, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
              const LaneKernels& kernels, bool conserving);
 
+  /// Single steps of another thread, with the same bits; null if the engine cannot be had twice.
+  [[nodiscard]] std::unique_ptr<SingleStep> another() const;
+
   /// Prediction of the next trial from the mean velocities of past steps.
   struct Predictor {
     int degree = 3;            ///< Of the extrapolation in time; −1: the velocities at t_n.
@@ -40,6 +43,7 @@ class SingleStep {
   /// Requires rows to hold to round-off: in shorter steps after one whose rows did not hold, which
   /// may be so short that any gap is below the tolerance.
   void hold_to_round_off(bool yes) { to_round_off_ = yes; }
+  [[nodiscard]] bool holds_to_round_off() const { return to_round_off_; }
   /// The open row if the last trial was refused because not all rows hold.
   [[nodiscard]] const std::optional<OpenRow>& open_row() const { return open_; }
   /// Joints and drives that cannot all hold, if its rows showed that.

@@ -185,7 +185,9 @@ std::vector<std::string> Stepper::warnings() const {
 }
 
 std::vector<std::pair<std::string, double>> Stepper::phases() const {
-  return impl_->single.phases();
+  std::vector<std::pair<std::string, double>> phases = impl_->single.phases();
+  if (impl_->table) phases[1].second += impl_->table->waited();  // for iterations
+  return phases;
 }
 
 }  // namespace polhode
