@@ -339,7 +339,7 @@ int check(const CheckOptions& options) {
 
   if (options.json) {
     nlohmann::ordered_json json = {{"valid", impossible.empty()},
-                                   {"bodies", simulation.model().bodies.size()},
+                                   {"bodies", given_bodies(simulation.model())},
                                    {"moving_bodies", moving_bodies(simulation.model())},
                                    {"joints", simulation.model().joints.size()},
                                    {"loads", simulation.model().loads.size()},
@@ -369,7 +369,7 @@ int check(const CheckOptions& options) {
     print(json.dump(2) + "\n");
   } else {
     std::vector<std::vector<std::string>> rows{
-        {"bodies", format("{}", simulation.model().bodies.size()),
+        {"bodies", format("{}", given_bodies(simulation.model())),
          format("{} of them move", moving_bodies(simulation.model()))},
         {"joints", format("{}", simulation.model().joints.size())},
         {"loads", format("{}", simulation.model().loads.size())},
