@@ -70,6 +70,11 @@ SparseEngine::SparseEngine(const System& system, const std::string& solver, Mome
   set_up();
 }
 
+std::unique_ptr<NewtonEngine> SparseEngine::another() const {
+  if (nodes_ || contacts_ || rows_) return nullptr;
+  return std::make_unique<SparseEngine>(*system_, solver_->name(), newton_.form());
+}
+
 std::string SparseEngine::name() const {
   return std::string(rows_       ? "rows + "
                      : contacts_ ? "contact + "

@@ -29,6 +29,8 @@ class SparseEngine final : public NewtonEngine {
                MomentumRate form = MomentumRate::momentum,
                NodeFactor policy = NodeFactor::automatic);
   [[nodiscard]] std::string name() const override;
+  /// Null with deformable solids and contacts, whose searches have memories.
+  [[nodiscard]] std::unique_ptr<NewtonEngine> another() const override;
   void begin_step(const State& state, Trial& trial) override;
   void resume(const State& state, Trial& trial) override;
   void set_proximal(double epsilon) override { newton_.set_proximal(epsilon); }

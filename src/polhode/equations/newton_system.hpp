@@ -83,6 +83,7 @@ void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& 
 class NewtonSystem {
  public:
   NewtonSystem(const System& system, MomentumRate form);
+  [[nodiscard]] MomentumRate form() const { return form_; }
 
   /// Sets further coupled pairs of bodies: their blocks come last in values() and are filled by
   /// others. Replaces earlier ones.
