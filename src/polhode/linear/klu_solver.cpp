@@ -11,8 +11,6 @@ namespace polhode::linear {
 
 namespace {
 
-/// Smallest max|A|/max|U| of a column; below it reused pivots are dropped [-].
-constexpr double kMinPivotGrowth = 1e-3;
 /// Part of its column from which on a diagonal pivot is accepted [-]: KLU's default 1e-3 reduces
 /// fill but loses digits that the extra Newton iteration needs.
 constexpr double kPivotTolerance = 0.1;
@@ -44,15 +42,6 @@ class KluSolver final : public LinearSolver {
   int* starts() const { return const_cast<int*>(matrix_.column_start().data()); }
   int* rows() const { return const_cast<int*>(matrix_.row_index().data()); }
 
-  bool refactor() {
-    if (!numeric_) return false;
-    double* const x = matrix_.values().data();
-    return klu_refactor(starts(), rows(), x, symbolic_, numeric_, &common_) != 0 &&
-           common_.status == KLU_OK &&
-           klu_rgrowth(starts(), rows(), x, symbolic_, numeric_, &common_) != 0 &&
-           common_.rgrowth > kMinPivotGrowth;
-  }
-
   KktMatrix matrix_;
   mutable klu_common common_{};  // solving changes its status
   klu_symbolic* symbolic_ = nullptr;
@@ -72,12 +61,10 @@ void KluSolver::analyse(const KktTopology& topology) {
 
 bool KluSolver::factor(const KktValues& values) {
   if (matrix_.size() == 0) return true;
-  if (!matrix_.set(values)) {
-    klu_free_numeric(&numeric_, &common_);
-    return false;
-  }
-  if (refactor()) return true;
   klu_free_numeric(&numeric_, &common_);
+  if (!matrix_.set(values)) return false;
+  // Pivots of an earlier matrix would save half of the time, but then a step would depend on those
+  // before it by more than its state, and a continued run would have other bits.
   numeric_ = klu_factor(starts(), rows(), matrix_.values().data(), symbolic_, &common_);
   return numeric_ != nullptr && common_.status == KLU_OK;
 }
