@@ -50,8 +50,8 @@ class Batch:
     parameters: values by path, (runs,) or (runs, n).
     messages:   by run, why it was not finished or is not to be trusted; "" if it was and is.
     finished:   by run, whether it was, and is to be trusted (runs,).
-    alone:      by run, whether it was in a system of its own (runs,): its numbers are those of polhode.run, bit for bit;
-                of the others to rounding.
+    alone:      by run, whether it was in a system of its own (runs,): its numbers are those of polhode.run, bit for
+                bit; of the others to rounding.
     why_alone:  why all were; "" if they need not be.
     """
 
@@ -105,8 +105,8 @@ class Batch:
         return BatchRun(self, number % len(self))
 
     def to_pandas(self, *measures: str) -> Any:
-        """A pandas.DataFrame with a row for each run: its parameters, measures as those of polhode.sweep, "max(CHANNEL)",
-        "at(CHANNEL, TIME)", CHANNEL for its last value, and its message."""
+        """A pandas.DataFrame with a row for each run: its parameters, measures as those of polhode.sweep,
+        "max(CHANNEL)", "at(CHANNEL, TIME)", CHANNEL for its last value, and its message."""
         import pandas
 
         rows = []
@@ -159,15 +159,15 @@ def batch(
                 in the model's units.
     channels:   what is kept of each run: "bodies.NAME.position", velocity, acceleration, orientation,
                 angular_velocity, "joints.NAME.coordinates", rates, force, moment, "loads.NAME.COLUMN", "probes.NAME" or
-                one of its columns, or a number of these, "bodies.NAME.position.x". None: the model's probes, or positions
-                and orientations of its bodies.
+                one of its columns, or a number of these, "bodies.NAME.position.x". None: the model's probes, or
+                positions and orientations of its bodies.
     overrides:  changes of the model for all runs, by path.
     threads:    None: one for each processor. Numbers do not depend on it.
 
     Frames are at multiples of output.every, or every step. Runs are side by side if steps are fixed, and the model has
     bodies, joints without friction and stops, and loads only; others are run one by one, and the result says why.
-    Numbers side by side are those of a run alone to rounding. A run that fails has a message and NaN; it does not disturb
-    the others. Raises ModelError for faults of the first run's model or a channel that is not known, ValueError for
+    Numbers side by side are those of a run alone to rounding. A run that fails has a message and NaN; it does not
+    disturb the others. Raises ModelError for faults of the first run's model or a channel that is not known, ValueError for
     arrays that do not fit, KeyboardInterrupt for Ctrl-C.
     """
     if not isinstance(model, Model):

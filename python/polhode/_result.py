@@ -448,7 +448,8 @@ class Result(Differentiable):
 
     def plot(self, *channels: str, axes: Any = None) -> Any:
         """Draws channels over time with matplotlib, one panel each: r.plot("energy", "joints.A.force").
-        A group draws all its channels in one panel, a probe its columns, those of one unit in one. Returns the figure."""
+        A group draws all its channels in one panel, a probe its columns, those of one unit in one. Returns the
+        figure."""
         return plot(self, channels or ("energy",), axes)
 
     def _expand(self, channels: "tuple[str, ...]") -> "list[str]":

@@ -86,8 +86,8 @@ def _arguments() -> argparse.ArgumentParser:
                         "(.svg, .png, .pdf)")
     parser.add_argument("-o", "--table", default="sweep.csv", help="the table (sweep.csv)")
     parser.add_argument("--jobs", "-j", type=int, help="number of parallel runs; default: one for each processor")
-    parser.add_argument("--batch", action="store_true", help="several runs side by side in one system: faster for small "
-                        "mechanisms with fixed steps; rows have outputs only")
+    parser.add_argument("--batch", action="store_true", help="several runs side by side in one system: faster for "
+                        "small mechanisms with fixed steps; rows have outputs only")
     parser.add_argument("--dask", metavar="ADDRESS", help="runs on the workers of this Dask scheduler")
     parser.add_argument("--seed", type=int, default=0, help="of sobol, lhs and normal (0)")
     return parser

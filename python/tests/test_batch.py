@@ -72,7 +72,8 @@ def test_numbers_do_not_depend_on_threads():
 
 def test_lists_vary_as_well():
     gravity = np.array([[0, 0, -9.81], [0, 0, -1.62], [1.0, 0, -9.81], [0, 0, -9.81]])
-    b = polhode.batch(pendulum(), {"gravity": gravity, "bodies.rod.mass": 2}, ["bodies.rod.position", "joints.hinge.rates"])
+    channels = ["bodies.rod.position", "joints.hinge.rates"]
+    b = polhode.batch(pendulum(), {"gravity": gravity, "bodies.rod.mass": 2}, channels)
     assert b.alone.tolist() == [False, True, True, False]  # gravity is one for all that are side by side
     for k in range(4):
         r = polhode.run(pendulum(), overrides={"gravity": gravity[k].tolist(), "bodies.rod.mass": 2})
