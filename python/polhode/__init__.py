@@ -62,8 +62,8 @@ _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
     "Batch", "BodyReading", "Experiment", "Fault", "Fit", "Gradient", "Matrices", "Minimum", "Mode", "Model",
-    "ModelError", "Modes", "NotConverged", "NotReached", "Pose", "Result", "Simulation", "StateFunction", "StateSpace", "Step",
-    "StepEquations", "Uncertainty", "__version__", "batch", "fit", "from_text", "gradient", "inverse_dynamics",
+    "ModelError", "Modes", "NotConverged", "NotReached", "Pose", "Result", "Simulation", "StateFunction", "StateSpace",
+    "Step", "StepEquations", "Uncertainty", "__version__", "batch", "fit", "from_text", "gradient", "inverse_dynamics",
     "jax_function", "linearize", "load", "matrices", "minimize", "modes", "open", "rotations", "run", "spin_modes",
     "step_equations", "sweep", "torch_function",
 ]

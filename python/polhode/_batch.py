@@ -167,8 +167,8 @@ def batch(
     Frames are at multiples of output.every, or every step. Runs are side by side if steps are fixed, and the model has
     bodies, joints without friction and stops, and loads only; others are run one by one, and the result says why.
     Numbers side by side are those of a run alone to rounding. A run that fails has a message and NaN; it does not
-    disturb the others. Raises ModelError for faults of the first run's model or a channel that is not known, ValueError for
-    arrays that do not fit, KeyboardInterrupt for Ctrl-C.
+    disturb the others. Raises ModelError for faults of the first run's model or a channel that is not known,
+    ValueError for arrays that do not fit, KeyboardInterrupt for Ctrl-C.
     """
     if not isinstance(model, Model):
         model = load(model)

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Batches: many runs of one mechanism side by side."""
 
+import pathlib
+from typing import Any
+
 import numpy as np
 import pytest
 
 import polhode
 
 
-def pendulum(**analysis):
+def pendulum(**analysis: Any) -> polhode.Model:
     """A thin rod on a hinge, released from an angle."""
     m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 1, "step": "5 ms", "order": 4, **analysis})
     m.variables = {"L": 1}
@@ -18,7 +21,7 @@ def pendulum(**analysis):
     return m
 
 
-def test_energy_of_each_run_is_conserved():
+def test_energy_of_each_run_is_conserved() -> None:
     lengths = np.linspace(0.5, 2, 70)
     channels = ["bodies.rod.position", "bodies.rod.velocity", "bodies.rod.angular_velocity", "probes.end.z"]
     for step in ("25 ms", "5 ms", "0.5 ms"):
@@ -34,7 +37,7 @@ def test_energy_of_each_run_is_conserved():
         assert np.allclose(b["probes.end.z"], 2 * b["bodies.rod.position.z"], atol=1e-12)
 
 
-def test_rows_are_those_of_a_sweep():
+def test_rows_are_those_of_a_sweep() -> None:
     m = pendulum()
     measures = ["bodies.rod.position", "max(joints.hinge.force.size)", "at(bodies.rod.velocity.x, 0.33)",
                 "first(bodies.rod.position.x < 0)"]
@@ -49,7 +52,7 @@ def test_rows_are_those_of_a_sweep():
         assert np.allclose(rows[name], table[name], atol=1e-10), name
 
 
-def test_a_sweep_takes_batches(tmp_path):
+def test_a_sweep_takes_batches(tmp_path: pathlib.Path) -> None:
     m = pendulum()
     lengths, stored = [0.5, 0.9, 1.7], tmp_path / "rows.jsonl"
     outputs = ["bodies.rod.position", "max(bodies.rod.velocity.size)", "first(probes.end.x < 0)"]
@@ -58,19 +61,21 @@ def test_a_sweep_takes_batches(tmp_path):
     assert len(stored.read_text().splitlines()) == 3
     for name in rows.columns.drop("message"):
         assert np.allclose(rows[name], table[name], atol=1e-10), name
-    for wrong in ({"outputs": ()}, {"outputs": outputs, "gradients": ["bodies.rod.position.x@end"]}):
+    gradient = {"outputs": outputs, "gradients": ["bodies.rod.position.x@end"]}
+    refused: "list[dict[str, Any]]" = [{"outputs": ()}, gradient]
+    for wrong in refused:
         with pytest.raises(ValueError, match="a batch takes outputs as texts"):
             polhode.sweep(m, {"variables.L": lengths}, batch=True, **wrong)
 
 
-def test_numbers_do_not_depend_on_threads():
+def test_numbers_do_not_depend_on_threads() -> None:
     masses = np.linspace(1, 2, 100)
     runs = [polhode.batch(pendulum(), {"bodies.rod.mass": masses}, threads=n) for n in (1, 2, 5)]
     for b in runs[1:]:
         assert np.array_equal(b["probes.end"], runs[0]["probes.end"])
 
 
-def test_lists_vary_as_well():
+def test_lists_vary_as_well() -> None:
     gravity = np.array([[0, 0, -9.81], [0, 0, -1.62], [1.0, 0, -9.81], [0, 0, -9.81]])
     channels = ["bodies.rod.position", "joints.hinge.rates"]
     b = polhode.batch(pendulum(), {"gravity": gravity, "bodies.rod.mass": 2}, channels)
@@ -81,14 +86,14 @@ def test_lists_vary_as_well():
         assert np.allclose(b["joints.hinge.rates.0"][k], r["joints.hinge.rates"][:, 0], atol=1e-9)
 
 
-def test_a_run_that_fails_says_why():
+def test_a_run_that_fails_says_why() -> None:
     b = polhode.batch(pendulum(), {"bodies.rod.mass": [1, -1, 2]})
     assert b.finished.tolist() == [True, False, True] and "bodies.rod.mass" in b.messages[1]
     assert np.isnan(b["probes.end"][1]).all() and np.isfinite(b["probes.end"][[0, 2]]).all()
     assert "1 failed" in repr(b) and "bodies.rod.mass" in repr(b.run(1)) and "finished" in repr(b.run(-1))
 
 
-def test_what_does_not_fit_is_refused():
+def test_what_does_not_fit_is_refused() -> None:
     m = pendulum()
     with pytest.raises(ValueError, match="different numbers of values"):
         polhode.batch(m, {"variables.L": [1, 2], "bodies.rod.mass": [1, 2, 3]})
@@ -107,7 +112,7 @@ def test_what_does_not_fit_is_refused():
     assert b.unit("bodies.rod.position.x") == "m"
 
 
-def test_functions_in_python_are_refused():
+def test_functions_in_python_are_refused() -> None:
     m = pendulum()
     m.add_load("push", "force", body="rod", at=[0, 0, 0], force=[lambda t: t, 0, 0])
     with pytest.raises(polhode.ModelError, match="loads.push"):
