@@ -60,7 +60,7 @@ class Batch:
         self.time, channels, self.messages, alone, self.why_alone = found
         self.alone = np.array(alone, dtype=bool)
         self._arrays = {name: array for name, _, array in channels}
-        self._units = {name: unit for name, unit, _ in channels}
+        self._units: "dict[str, str]" = {name: unit for name, unit, _ in channels}
 
     @property
     def finished(self) -> Any:

@@ -4,12 +4,20 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Callable
+from typing import Any, Callable, Protocol
 
 import numpy as np
 
 from . import _native
 from ._result import Group, Result
+
+
+class Channels(Protocol):
+    """What measures need of a result: its channels by name, and their times."""
+
+    def __getitem__(self, channel: str, /) -> Any: ...
+    def times(self, channel: str) -> Any: ...
+
 
 _CALL = re.compile(r"\s*(\w+)\s*\((.*)\)\s*")
 _FIRST = re.compile(r"(.+?)\s*([<>])\s*([^<>]+)")
@@ -34,7 +42,7 @@ _WHOLE: "dict[str, Callable[[Any, Any], Any]]" = {
 }
 
 
-def series(result: Result, channel: str) -> "tuple[Any, Any]":
+def series(result: Channels, channel: str) -> "tuple[Any, Any]":
     """Times and values (T, ...) of a channel, of a probe's column, of the size of a vector as CHANNEL.size, or of one
     of several numbers as CHANNEL.1."""
     above, _, last = channel.rpartition(".")
@@ -72,7 +80,7 @@ def _number(text: str, of: str) -> float:
         raise ValueError(f"'{of}': '{text.strip()}' is not a number in SI units") from None
 
 
-def measure(result: Result, text: str) -> "dict[str, float]":
+def measure(result: Channels, text: str) -> "dict[str, float]":
     """Numbers of a result by name: of a channel its last value, or of a function of a channel over time.
 
     Functions: max, min, mean and rms (over time), range, final, at(CHANNEL, TIME) between frames linearly, NaN outside
@@ -118,7 +126,7 @@ def channel_of(text: str) -> str:
     return name.strip().removesuffix(".size")
 
 
-def _first(result: Result, text: str, inside: str) -> float:
+def _first(result: Channels, text: str, inside: str) -> float:
     """First time at which a channel is above or below a value."""
     parts = _FIRST.fullmatch(inside.strip())
     if not parts:

@@ -132,7 +132,7 @@ def sweep(
         if callable(outputs) or not wanted or gradients or client is not None:
             raise ValueError("a batch takes outputs as texts, at least one, and no gradients and no client")
         left = {i: p for i, p in enumerate(points) if i not in rows}
-        rows_in_turn = _in_blocks(model, fixed, left, wanted, processes)
+        rows_in_turn = _in_blocks(model, fixed, left, list(outputs), processes)
     tasks = {i: (model, fixed, point, wanted, list(gradients)) for i, point in enumerate(points) if i not in rows}
     log = None
     if path is not None:

@@ -136,6 +136,14 @@ def test_overrides_hold_for_one_run(pendulum: polhode.Model) -> None:
     assert pendulum.variables["g"] == 9.81
 
 
+def test_threads_have_the_same_bits(pendulum: polhode.Model) -> None:
+    changes = {"analysis.method": "extrapolation", "analysis.order": 8, "analysis.step": "50 ms"}
+    one, two = (polhode.run(pendulum, overrides=changes, threads=n) for n in (1, 2))
+    assert "extrapolation" in two.ledger.scheme and two.ledger.result_hash == one.ledger.result_hash
+    with pytest.raises(ValueError, match="threads is 0"):
+        polhode.run(pendulum, threads=0)
+
+
 def test_a_table_goes_to_parquet_with_units(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     r = polhode.run(pendulum)
