@@ -24,7 +24,7 @@ LAYERS = [
     ["simulation"],
     ["gradient"],
     ["io/text"],
-    ["io/schema", "io/importers"],
+    ["io/schema", "io/importers", "io/exporters"],
     ["io/read"],
     ["io/results"],
     ["study", "view"],

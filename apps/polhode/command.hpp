@@ -59,6 +59,7 @@ Action add_plot(CLI::App& command);
 Action add_report(CLI::App& command);
 Action add_convert(CLI::App& command);
 Action add_import(CLI::App& command);
+Action add_export(CLI::App& command);
 Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_schema(CLI::App& command);

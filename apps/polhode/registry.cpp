@@ -27,6 +27,7 @@ const std::vector<Command>& commands() {
        "Write results as a table, a scene for other programs, or a film; a robot's file as a model",
        add_convert},
       {"import", "Report what is read from a robot's file, and what is not", add_import},
+      {"export", "Write a model whose bodies form a tree as a robot's file", add_export},
       {"check", "Check a model: mobility, redundant rows, start, tangents", add_check},
       {"info", "List what a model contains, or the kinds of joints, loads and shapes", add_info},
       {"schema", "Write the JSON Schema or the reference page of the model file", add_schema},

@@ -30,6 +30,17 @@ class _Origin(NamedTuple):
     tree: "dict[str, Any]"
 
 
+class ExportNote(NamedTuple):
+    """A difference between a model and the file that Model.export wrote of it."""
+
+    kind: str
+    """"left out", "differs" (programs that read the file treat it in another way) or "not in the file"."""
+    path: str
+    """Path in the model, such as "joints.hinge.limits"."""
+    what: str
+    """A sentence."""
+
+
 def overrides_list(overrides: Overrides) -> "list[str]":
     """Overrides in the form of the command line: {"variables.L": 2} → ["variables.L=2"]."""
     return [f"{path}={_text.flow(plain(value))}" for path, value in (overrides or {}).items()]
@@ -235,6 +246,18 @@ class Model(Section):
         text = json.dumps(self._tree(), indent=2, ensure_ascii=False) if name.endswith(".json") else self.to_yaml()
         with open(name, "w", encoding="utf-8") as file:
             file.write(text if text.endswith("\n") else text + "\n")
+
+    def export(self, path: "Union[str, os.PathLike[str]]", *, allow_partial: bool = False,
+               overrides: Overrides = None) -> "list[ExportNote]":
+        """Writes the model at its start as a file of another program: a URDF if the name ends with .urdf, an MJCF if
+        it ends with .xml. Returns what differs, and what was left out.
+
+        Bodies and joints must form a tree, in an MJCF apart from loops that spherical or fixed joints close. Raises
+        ModelError with all that the format cannot represent, unless allow_partial is True, and for other endings;
+        OSError if the file cannot be written.
+        """
+        notes = _native.export_file(self._compile(overrides), os.fspath(path), allow_partial)
+        return [ExportNote(*note) for note in notes]
 
     def copy(self) -> "Model":
         """An independent copy of the model."""

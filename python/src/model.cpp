@@ -6,6 +6,7 @@
 #include <polhode/core/held_value.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/core/time_sum.hpp>
+#include <polhode/io/exporters/export_model.hpp>
 #include <polhode/io/read/read_import.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/read/time_function.hpp>
@@ -132,6 +133,17 @@ void add_offset(CompiledModel& compiled, const std::string& load, int component,
                      "Name a component of a force or moment, x, y or z, or the drive of a motor");
 }
 
+/// Writes a model at its start as a file of another program. @returns the notes: kind, path, what.
+nb::list export_file(const CompiledModel& compiled, const std::string& path, bool partial) {
+  const Simulation simulation(compiled.model);
+  const io::Exported written = io::export_model(simulation, {path, partial});
+  io::write_file_atomically(path, written.text, false);
+  nb::list notes;
+  for (const io::ExportNote& n : written.notes)
+    notes.append(nb::make_tuple(io::word_of(n.kind), n.path, n.what));
+  return notes;
+}
+
 }  // namespace
 
 void bind_model(nb::module_& m) {
@@ -167,6 +179,8 @@ void bind_model(nb::module_& m) {
       .def("add_offset", &add_offset, nb::arg("load"), nb::arg("component"), nb::arg("offset"))
       .def_prop_ro("step", [](const CompiledModel& c) { return c.model.analysis.step; })
       .def_prop_ro("duration", [](const CompiledModel& c) { return c.model.analysis.duration; });
+  m.def("export_file", &export_file, nb::arg("model"), nb::arg("path"), nb::arg("partial"),
+        "Writes a model as a file of another program, and returns notes of kind, path and text.");
   m.def(
       "compile",
       [](const std::string& text, const std::string& name, const io::Overrides& overrides) {

@@ -23,8 +23,8 @@ TEST_F(CommandLine, SuggestsACommandForAMisspeltOne) {
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.err,
             "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, "
-            "gradient, modes, view, plot, report, convert, import, check, info, schema, examples, "
-            "doctor. Run "
+            "gradient, modes, view, plot, report, convert, import, export, check, info, schema, "
+            "examples, doctor. Run "
             "'polhode --help' for its options.\n");
 }
 
