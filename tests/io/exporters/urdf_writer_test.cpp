@@ -165,8 +165,11 @@ TEST_F(Exports, RefuseByNameWhatAUrdfHasNot) {
       HasSubstr("joints.B"));
   EXPECT_THAT(fault(hinge + "events:\n  stop: {at: 0.1, off: [A]}\n", "a.urdf"),
               HasSubstr("events.stop: a URDF has no events"));
-  EXPECT_THAT(fault(hinge + "contacts: {default: {}}\n", "a.urdf"),
-              HasSubstr("contacts: a URDF has other laws of contact"));
+  EXPECT_THAT(
+      fault("bodies:\n  a: {shape: {sphere: 1}, density: 1}\n  b: {shape: {sphere: 1}, density: "
+            "1, position: [3, 0, 0]}\ncontacts: {default: {}}\n",
+            "a.urdf"),
+      HasSubstr("contacts: a URDF has other laws of contact"));
   EXPECT_THAT(fault("bodies:\n  p: {mass: 1, point_mass: true}\n", "a.urdf"),
               HasSubstr("bodies.p: a URDF has no point masses"));
   EXPECT_THAT(fault("bodies:\n  p: {shape: {cone: [1, 1]}, density: 1}\n", "a.urdf"),
