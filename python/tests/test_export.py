@@ -47,7 +47,8 @@ MODELS = {
         {"spring": {"type": "torsional_spring", "joint": "a", "stiffness": 5, "damping": 0.3, "free_angle": 0.2},
          "flywheel": {"type": "rotary_inerter", "joint": "a", "inertance": 0.4},
          "buffer": {"type": "translational_spring", "joint": "b", "stiffness": 300, "free_displacement": 0.02},
-         "drag": {"type": "vector_damper", "bodies": ["third", "second"], "at": [[1, 0.4, 0]] * 2, "turning_damping": 0.02},
+         "drag": {"type": "vector_damper", "bodies": ["third", "second"], "at": [[1, 0.4, 0]] * 2,
+                  "turning_damping": 0.02},
          "servo": {"type": "rotary_servo", "joint": "a", "angle": 0.5, "stiffness": 2, "damping": 0.1},
          "motor": {"type": "linear_motor", "joint": "b", "force": 1.5}}),
     "universal, cylindrical, planar": tree(
