@@ -5,6 +5,7 @@
 
 #include "export_fixture.hpp"
 
+#include <polhode/core/error.hpp>
 #include <polhode/io/exporters/export_text.hpp>
 
 namespace polhode::urdf_writer_tests {
