@@ -387,8 +387,8 @@ TEST_F(FebSolidsCli, WhatIsNotReadIsSaid) {
     EXPECT_EQ(done.code, 3) << done.out;
     return done.err;
   };
-  EXPECT_THAT(fault(file("hex8", material("Ogden", ""), kSymmetry)),
-              HasSubstr("the material 'm' of type 'ogden' is not read"));
+  EXPECT_THAT(fault(file("hex8", material("Arruda-Boyce", ""), kSymmetry)),
+              HasSubstr("the material 'm' of type 'arruda-boyce' is not read"));
   EXPECT_THAT(fault(file("hex8", material("neo-Hookean", "<E>1e6</E>"), kSymmetry)),
               HasSubstr("has no <E> or <v>"));
   EXPECT_THAT(fault(file("hex8", kElastic,
@@ -403,7 +403,7 @@ TEST_F(FebSolidsCli, WhatIsNotReadIsSaid) {
                          material("trans iso Mooney-Rivlin",
                                   "<c1>1</c1><k>100</k><fiber type='local'>1,2</fiber>"),
                          kSymmetry)),
-              HasSubstr("only fibres of type \"vector\" are read"));
+              HasSubstr("only fibres of type \"vector\" or \"angles\" are read"));
   // Fibres may be given without a tag of their own.
   write("cube.feb",
         file("hex8",

@@ -23,13 +23,14 @@ struct Constant : TimeFunction {
 std::unique_ptr<solids::SolidElements> solid_of(const solids::Mesh& mesh,
                                                 const solids::ElementKind& kind,
                                                 std::shared_ptr<const solids::Material> material) {
+  const std::vector<Vec3> fibres = test::example_directions(*material);
   return solids::make_solid_elements({.name = "solids.block",
                                       .element = kind.name,
                                       .material = std::move(material),
                                       .density = 1000.0,
                                       .connectivity = mesh.blocks[0].nodes,
                                       .X = mesh.nodes,
-                                      .fibres = {Vec3(1.0, 0.4, -0.3)}});
+                                      .fibres = fibres});
 }
 
 std::vector<std::string> kind_names() {

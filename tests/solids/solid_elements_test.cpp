@@ -71,10 +71,10 @@ TEST(SolidElements, RefuseInvalidDescriptions) {
   d = cube("hex8_q1p0");
   EXPECT_THAT(make(d), refused("needs an uncoupled material"));
   d = cube();
-  d.material = solids::make_material("m", {.kind = "elastic",
-                                           .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
-                                           .fibre = "exponential",
-                                           .fibre_values = {{"xi", 1.0}, {"alpha", 1.0}}});
+  d.material = solids::make_material(
+      "m", {.kind = "elastic",
+            .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
+            .fibres = {{.law = "exponential", .values = {{"xi", 1.0}, {"alpha", 1.0}}}}});
   EXPECT_THAT(make(d), refused("fibres"));
   EXPECT_THROW((void)solids::make_solid_elements(cube("hex20r")), InputError);
 }

@@ -168,6 +168,7 @@ class SolidStep {
     const std::string& isa = "automatic") {
   std::vector<int> connectivity;
   for (int i = 0; i < kind.sizes().nodes; ++i) connectivity.push_back(i);
+  const std::vector<Vec3> fibres = example_directions(*material);
   return solids::make_solid_elements({.name = "solids.one",
                                       .element = kind.name,
                                       .material = std::move(material),
@@ -175,7 +176,7 @@ class SolidStep {
                                       .conserving = conserving,
                                       .connectivity = connectivity,
                                       .X = X,
-                                      .fibres = {Vec3(1.0, 0.4, -0.3)},
+                                      .fibres = fibres,
                                       .isa = isa});
 }
 

@@ -34,6 +34,8 @@ struct FlexibleScene {
     double step = 0.02, rho_inf = 1.0;
     int order = 2;
     NodeFactor factor = NodeFactor::every_iteration;
+    std::vector<solids::FibreDescription> fibres = {};
+    std::vector<Vec3> directions = {};  ///< Of the fibres.
   };
 
   explicit FlexibleScene(const Options& o) : options(o) {
@@ -76,6 +78,7 @@ struct FlexibleScene {
     material.kind = o.material;
     material.values = {o.moduli.begin(), o.moduli.end()};
     material.relaxation_time = o.relaxation_time;
+    material.fibres = o.fibres;
     solids::SolidElementsDescription d;
     d.name = "solids.bar";
     d.element = o.element;
@@ -84,6 +87,7 @@ struct FlexibleScene {
     d.conserving = o.conserving;
     d.connectivity = mesh.blocks.at(0).nodes;
     d.X = X;
+    d.fibres = o.directions;
     system.add_elements(solids::make_solid_elements(std::move(d)));
     if (o.hinge)
       system.group<Joint>().add("pin", "revolute", Participants{kGround, hub},

@@ -66,7 +66,8 @@ class SolidBuilder {
                                          .X = X,
                                          .isa = model_.analysis.isa};
       for (int& node : d.connectivity) node += map_.first_node;
-      if (spec.fibre) d.fibres = {solid_.mesh.orientation.normalized() * spec.fibre->direction};
+      for (const FibreSpec& fibre : spec.fibres)
+        d.fibres.push_back(solid_.mesh.orientation.normalized() * fibre.direction);
       groups_.push_back(solids::make_solid_elements(std::move(d)));
       for (const std::string& warning : groups_.back()->warnings())
         map_.plan.warnings.push_back(warning);

@@ -8,10 +8,8 @@ namespace polhode {
 
 solids::MaterialDescription material_description(const MaterialSpec& material) {
   solids::MaterialDescription d{.kind = material.type, .values = material.parameters};
-  if (material.fibre) {
-    d.fibre = material.fibre->law;
-    d.fibre_values = material.fibre->parameters;
-  }
+  for (const FibreSpec& fibre : material.fibres)
+    d.fibres.push_back({.law = fibre.law, .values = fibre.parameters});
   d.relaxation_time = material.viscosity.relaxation_time;
   d.viscous = {material.viscosity.lame, material.viscosity.shear};
   return d;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
@@ -20,7 +20,7 @@ struct ViscositySpec {
   [[nodiscard]] bool any() const { return relaxation_time > 0.0 || lame > 0.0 || shear > 0.0; }
 };
 
-/// Fibres in a material with stiffness in tension only.
+/// A family of fibres in a material, with stiffness in tension only.
 struct FibreSpec {
   std::string law;                           ///< A fibre law of the registry, e.g. exponential.
   std::map<std::string, double> parameters;  ///< By the registry's names, SI.
@@ -34,7 +34,7 @@ struct MaterialSpec {
   std::map<std::string, double> parameters;  ///< By the registry's names, SI. Absent = default.
   double density = 0.0;                      ///< In the undeformed shape [kg/m^3].
   ViscositySpec viscosity;
-  std::optional<FibreSpec> fibre;
+  std::vector<FibreSpec> fibres;  ///< By family.
 };
 
 }  // namespace polhode

@@ -47,7 +47,8 @@ class SolidGroup final : public SolidElements {
         density_(d.density),
         X_(d.X.begin(), d.X.end()),
         kernels_(element_kernels(d.isa)),
-        reference_(name_, kind_, d.connectivity, X_, d.fibres, kernels_.width),
+        reference_(name_, kind_, d.connectivity, X_, static_cast<int>(material_->fibres().size()),
+                   d.fibres, kernels_.width),
         to_nodes_(extrapolation(kind_)) {
     if (!kind_.warning.empty()) warnings_.push_back(format("{}: {}.", name_, kind_.warning));
     if (const double ratio = poisson_ratio(material_->linear()); ratio > kind_.most_poisson)
@@ -67,10 +68,12 @@ class SolidGroup final : public SolidElements {
     data_.law_kernel = laws.laws[material_->law_index()];
     if (material_->has_fibres()) {
       data_.fibres = reference_.fibres.data();
-      data_.fibre = material_->fibre();
-      data_.fibre_kernel = laws.fibres[material_->fibre_index()];
+      for (const Fibre& fibre : material_->fibres())
+        families_.push_back({fibre.law.data(), laws.fibres[fibre.index], fibre.dispersion});
+      data_.families = families_.data();
+      data_.family_count = static_cast<int>(families_.size());
     }
-    data_.volume_kernel = laws.volume;
+    data_.volume_kernel = laws.volumes[static_cast<int>(material_->kind().volume)];
     data_.uncoupled = material_->uncoupled();
     data_.bulk = material_->bulk_modulus();
     data_.conserving = d.conserving;
@@ -304,6 +307,7 @@ class SolidGroup final : public SolidElements {
   const ElementKernels& kernels_;
   ReferenceData reference_;
   Extrapolation to_nodes_;
+  std::vector<FibreFamily> families_;
   ElementData data_;
   std::vector<std::string> warnings_;
 };
@@ -326,12 +330,12 @@ void check(const SolidElementsDescription& d) {
                               d.connectivity[i], d.X.size()),
                        "Give numbers of nodes that exist");
   if (!d.material->has_fibres()) return;
-  const std::size_t elements = d.connectivity.size() / n;
-  if (d.fibres.size() != 1 && d.fibres.size() != elements)
+  const std::size_t elements = d.connectivity.size() / n, families = d.material->fibres().size();
+  if (d.fibres.size() != families && d.fibres.size() != families * elements)
     throw InputError(d.name,
                      format("the material has fibres, and {} directions are given for {} elements",
                             d.fibres.size(), elements),
-                     "Give one direction, or one for each element");
+                     "Give one direction for each family, or for each family in each element");
   for (const Vec3& direction : d.fibres)
     if (!(direction.norm() > 0.0) || !direction.allFinite())
       throw InputError(d.name, "a fibre direction is zero or not finite",

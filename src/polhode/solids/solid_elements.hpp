@@ -22,8 +22,9 @@ struct SolidElementsDescription {
   bool conserving = true;         ///< Stress by discrete gradients; false: of the averaged F.
   std::vector<int> connectivity;  ///< Numbers of nodes, element after element.
   std::span<const Vec3> X;        ///< Reference positions of all nodes [m].
-  std::vector<Vec3> fibres =
-      {};  ///< If the material needs them: one, or one per element; any length.
+  /// If the material needs them: the direction of each family, the same in all elements or element
+  /// after element; any length.
+  std::vector<Vec3> fibres = {};
   std::string isa = "automatic";  ///< Instruction set of the kernels: automatic, baseline, ...
 };
 

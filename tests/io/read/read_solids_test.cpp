@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,13 +27,43 @@ TEST(ReadSolids, ResolvesMaterialsToSi) {
   EXPECT_DOUBLE_EQ(rubber.parameters.at("youngs_modulus"), 2e6);
   EXPECT_DOUBLE_EQ(rubber.density, 1100.0);
   EXPECT_DOUBLE_EQ(rubber.viscosity.relaxation_time, 1e-3);
-  EXPECT_FALSE(rubber.fibre);
+  EXPECT_TRUE(rubber.fibres.empty());
   const MaterialSpec& gel = everything().materials[2];
   EXPECT_DOUBLE_EQ(gel.viscosity.shear, 10.0);
-  ASSERT_TRUE(gel.fibre);
-  EXPECT_EQ(gel.fibre->law, "exponential");
-  EXPECT_DOUBLE_EQ(gel.fibre->parameters.at("xi"), 5e3);
-  EXPECT_NEAR((gel.fibre->direction - Vec3(1, 1, 0).normalized()).norm(), 0.0, kRounding);
+  ASSERT_EQ(gel.fibres.size(), 1u);
+  EXPECT_EQ(gel.fibres[0].law, "exponential");
+  EXPECT_DOUBLE_EQ(gel.fibres[0].parameters.at("xi"), 5e3);
+  EXPECT_NEAR((gel.fibres[0].direction - Vec3(1, 1, 0).normalized()).norm(), 0.0, kRounding);
+}
+
+TEST(ReadSolids, TakesOneFamilyOfFibresOrAList) {
+  const auto read = [](const std::string& fibre) {
+    return io::read_model_text(
+        "format: 1\nmaterials: {m: {type: neo_hookean, youngs_modulus: 1, "
+        "poisson_ratio: 0.3, fibre: " +
+            fibre + "}}\n",
+        "model.yaml");
+  };
+  const Model two = read(
+      "[{law: exponential, xi: 2 kPa, alpha: 1, dispersion: 0.1, direction: x}, {law: "
+      "power_linear, modulus: 3, straight_stretch: 1.1, direction: [1, 1, 0]}]");
+  ASSERT_EQ(two.materials[0].fibres.size(), 2u);
+  EXPECT_EQ(two.materials[0].fibres[1].law, "power_linear");
+  EXPECT_DOUBLE_EQ(two.materials[0].fibres[0].parameters.at("dispersion"), 0.1);
+  EXPECT_NEAR(two.materials[0].fibres[1].direction.y(), std::sqrt(0.5), kRounding);
+  const auto fault = [&](const std::string& fibre) -> std::string {
+    try {
+      (void)read(fibre);
+    } catch (const io::ModelErrors& errors) {
+      return errors.text();
+    }
+    return "none";
+  };
+  EXPECT_THAT(fault("[]"), testing::HasSubstr("is an empty list"));
+  EXPECT_THAT(fault("[{law: exponential, xi: 1, alpha: 1, direction: x}, {law: toes}]"),
+              testing::HasSubstr("materials.m.fibre.1"));
+  EXPECT_THAT(fault("{law: exponential, xi: 1, alpha: 1, dispersion: 0.4, direction: x}"),
+              testing::HasSubstr("dispersion"));
 }
 
 TEST(ReadSolids, TakesMeshesFromGeneratorsAndNumbers) {

@@ -37,7 +37,7 @@ Model model_of_all() {
   load.value = std::make_shared<Wave>(1.0);
   load.selection.emplace_back();
   m.materials.emplace_back().parameters["youngs_modulus"] = 1e6;
-  m.materials[0].fibre.emplace();
+  m.materials[0].fibres.emplace_back();
   SolidSpec& solid = m.solids.emplace_back();
   solid.mesh.nodes.push_back({0.0, 0.0, 0.0});
   solid.bonded.emplace_back().nodes.emplace_back();
@@ -72,7 +72,7 @@ TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
       {"faces", [](Model& m) { m.loads[0].selection[0].value = 0.1; }},
       {"Young's modulus", [](Model& m) { m.materials[0].parameters["youngs_modulus"] = 2e6; }},
       {"viscosity", [](Model& m) { m.materials[0].viscosity.relaxation_time = 1e-3; }},
-      {"fibres", [](Model& m) { m.materials[0].fibre->direction = Vec3::UnitY(); }},
+      {"fibres", [](Model& m) { m.materials[0].fibres[0].direction = Vec3::UnitY(); }},
       {"mesh", [](Model& m) { m.solids[0].mesh.nodes[0].x() = 1e-9; }},
       {"element", [](Model& m) { m.solids[0].element = "hex8"; }},
       {"bond", [](Model& m) { m.solids[0].bonded[0].body = 1; }},

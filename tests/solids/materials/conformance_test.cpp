@@ -32,7 +32,11 @@ class EveryMaterial : public testing::TestWithParam<solids::MaterialDescription>
  protected:
   std::unique_ptr<const solids::Material> material_ =
       solids::make_material("materials.m", GetParam());
-  Vec3 A_ = Vec3(1.0, 2.0, -1.5).normalized();
+  std::vector<Vec3> A_ = [this] {
+    std::vector<Vec3> directions = example_directions(*material_);
+    for (Vec3& a : directions) a.normalize();
+    return directions;
+  }();
   double modulus_ = material_->bulk_modulus();
 };
 
@@ -153,7 +157,7 @@ std::string label_of(const testing::TestParamInfo<solids::MaterialDescription>& 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryMaterial, testing::ValuesIn(example_materials()), label_of);
 INSTANTIATE_TEST_SUITE_P(Registry, EveryMaterialWithoutFibres,
                          testing::ValuesIn(materials_with([](const auto& material) {
-                           return material.fibre.empty();
+                           return material.fibres.empty();
                          })),
                          label_of);
 INSTANTIATE_TEST_SUITE_P(Registry, EveryMaterialWithVolume,
@@ -194,10 +198,10 @@ TEST(MooneyRivlinUncoupled, SplitsStressIntoDeviatorAndPressure) {
 
 // A fibre that goes from slack to taut in one step: the work is the energy of the taut part only.
 TEST(Fibres, AreExactAcrossTheSwitchWithinAStep) {
-  const auto with = solids::make_material("m", {.kind = "neo_hookean",
-                                                .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
-                                                .fibre = "exponential",
-                                                .fibre_values = {{"xi", 10.0}, {"alpha", 3.0}}});
+  const auto with = solids::make_material(
+      "m", {.kind = "neo_hookean",
+            .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
+            .fibres = {{.law = "exponential", .values = {{"xi", 10.0}, {"alpha", 3.0}}}}});
   const auto without = solids::make_material(
       "m", {.kind = "neo_hookean", .values = {{"lame", 1.0}, {"shear_modulus", 1.0}}});
   for (const double size : {0.2, 1e-2, 1e-5, 1e-9}) {
@@ -220,8 +224,8 @@ TEST(ToeFibre, HasTheForceOfItsLaw) {
   const auto material = solids::make_material(
       "m", {.kind = "elastic",
             .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},
-            .fibre = "toe",
-            .fibre_values = {{"c3", c3}, {"c4", c4}, {"c5", c5}, {"straight_stretch", m}}});
+            .fibres = {{.law = "toe",
+                        .values = {{"c3", c3}, {"c4", c4}, {"c5", c5}, {"straight_stretch", m}}}}});
   const auto plain = solids::make_material(
       "m", {.kind = "elastic", .values = {{"lame", 1.0}, {"shear_modulus", 1.0}}});
   const auto law = [&](double stretch) {

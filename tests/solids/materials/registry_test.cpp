@@ -62,7 +62,7 @@ TEST(MaterialRegistry, NamesMissingUnknownAndSuperfluousValues) {
               refused("'c1' is missing"));
   EXPECT_THAT(make({.kind = "elastic",
                     .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.3}},
-                    .fibre = "exponentail"}),
+                    .fibres = {{.law = "exponentail", .values = {}}}}),
               refused("Did you mean 'exponential'?"));
 }
 

@@ -1,102 +1,189 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/io/importers/feb_law.hpp>
 #include <polhode/io/importers/feb_model.hpp>
 
 namespace polhode::io {
 
-namespace {
-
-using Element = XmlFile::Element;
-
-}  // namespace
-
-bool FebSolids::put_isotropic(const Element& e, const NodeBuilder& make, SourceNode& node) {
-  FebFile& file = model_.file;
-  const auto E = file.number(e, "E"), v = file.number(e, "v");
+bool FebLaw::put_isotropic(const Element& e) {
+  const auto E = file_.number(e, "E"), v = file_.number(e, "v");
   if (!E || !v) {
-    if (file.child(e, "E") == nullptr || file.child(e, "v") == nullptr)
-      file.xml.fault(e, "the material has no <E> or <v>", "Give both.");
+    if (file_.child(e, "E") == nullptr || file_.child(e, "v") == nullptr)
+      file_.xml.fault(e, "the material has no <E> or <v>", "Give both.");
     return false;
   }
-  make.put(node, "youngs_modulus", make.number(*E));
-  make.put(node, "poisson_ratio", make.number(*v));
+  make_.put(node_, "youngs_modulus", make_.number(*E));
+  make_.put(node_, "poisson_ratio", make_.number(*v));
   return true;
 }
 
-bool FebSolids::put_fibre(const Element& e, const NodeBuilder& make, SourceNode& node) {
-  FebFile& file = model_.file;
-  if (const Element* active = file.child(e, "active_contraction"))
-    file.refuse(*active, "<active_contraction> is not read", "Add a muscle to the model.");
-  const Element* direction = file.child(e, "fiber");
-  const std::string type = direction == nullptr ? "" : file.type(*direction);
-  std::optional<Vec3> a;
-  if (type == "vector") {
-    if (file.child(*direction, "vector") != nullptr)
-      a = file.direction(*direction, "vector", Vec3::UnitX());
-    else if (const auto text = XmlFile::content(*direction))
-      a = file.direction(e, "fiber", Vec3::UnitX());
+bool FebLaw::put_ogden_terms(const Element& e) {
+  int count = 0;
+  for (int k = 1; k <= 6; ++k) {
+    const double c = file_.number(e, format("c{}", k).c_str()).value_or(0.0);
+    const double m = file_.number(e, format("m{}", k).c_str()).value_or(1.0);
+    if (c == 0.0) continue;
+    ++count;
+    make_.put(node_, format("c{}", count), make_.number(c));
+    make_.put(node_, format("m{}", count), make_.number(m));
   }
-  if (!a) {
-    file.refuse(direction == nullptr ? e : *direction,
-                "only fibres of type \"vector\" are read, which are the same everywhere",
-                "Give <fiber type=\"vector\">.");
+  if (count > 0) return true;
+  file_.xml.fault(e, "the material has no stiffness", "Give <c1> and <m1>.");
+  return false;
+}
+
+bool FebLaw::add_bulk(const Element& e, int model) {
+  uncoupled_ = true;
+  bulk_ += file_.number(e, "k").value_or(0.0);
+  const Element* given = file_.child(e, "pressure_model");
+  if (given == nullptr || file_.number(e, "pressure_model") == model) return true;
+  file_.refuse(*given, format("only <pressure_model> {} is read of this material", model),
+               "Leave it out.");
+  return false;
+}
+
+bool FebLaw::put_matrix(const Element& e, const std::string& type, const Mat3& outer) {
+  const auto put = [&](const char* kind) { make_.put(node_, "type", make_.text(kind)); };
+  const auto number = [&](const char* tag) { return file_.number(e, tag).value_or(0.0); };
+  const auto copy = [&](const char* key, const char* tag) {
+    make_.put(node_, key, make_.number(number(tag)));
+  };
+  if (type == "neo-hookean") {
+    put("neo_hookean");
+    return put_isotropic(e);
+  }
+  if (type == "isotropic elastic" || type == "st.venant-kirchhoff") {
+    put("elastic");
+    return put_isotropic(e);
+  }
+  if (type == "mooney-rivlin" || type == "trans iso mooney-rivlin") {
+    put("mooney_rivlin_uncoupled");
+    copy("c1", "c1");
+    copy("c2", "c2");
+    if (!add_bulk(e, 0)) return false;
+    if (type == "mooney-rivlin") return true;
+    if (const Element* active = file_.child(e, "active_contraction"))
+      file_.refuse(*active, "<active_contraction> is not read", "Add a muscle to the model.");
+    isochoric_.push_back(true);
+    SourceNode fibre = fibre_node(e, "toe", {{"c3", "c3"}, {"c4", "c4"}, {"c5", "c5"}});
+    make_.put(fibre, "straight_stretch", make_.number(file_.number(e, "lam_max").value_or(1.0)));
+    return put_direction(e, outer, std::move(fibre));
+  }
+  if (type == "coupled mooney-rivlin") {
+    put("mooney_rivlin");
+    copy("c1", "c1");
+    copy("c2", "c2");
+    // The bulk term of FEBio is k/2 ln(J)^2, that of the model (lame - 4 c2)/2 ln(J)^2.
+    make_.put(node_, "lame", make_.number(number("k") + 4.0 * number("c2")));
+    return true;
+  }
+  if (type == "ogden") {
+    put("ogden_uncoupled");
+    return add_bulk(e, 0) && put_ogden_terms(e);
+  }
+  if (type == "ogden unconstrained") {
+    put("ogden");
+    copy("lame", "cp");
+    return put_ogden_terms(e);
+  }
+  if (type == "veronda-westmann") {
+    put("veronda_westmann");
+    copy("c1", "c1");
+    copy("c2", "c2");
+    return add_bulk(e, 0);
+  }
+  if (type == "holzapfel-gasser-ogden") {
+    put("holzapfel_gasser_ogden");
+    copy("shear_modulus", "c");
+    return add_bulk(e, 3) && put_arterial_fibres(e, outer);
+  }
+  file_.refuse(e, format("the material {} of type {} is not read", quote(name_), quote(type)),
+               "Materials are rigid body, neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, "
+               "Mooney-Rivlin, trans iso Mooney-Rivlin, coupled Mooney-Rivlin, Ogden, Ogden "
+               "unconstrained, Veronda-Westmann, Holzapfel-Gasser-Ogden, and mixtures of one of "
+               "them with fibres.");
+  return false;
+}
+
+bool FebLaw::put_mixture(const Element& e, const std::string& type) {
+  sum_of_coupled_ = type == "solid mixture";
+  const std::optional<Mat3> outer = axes(e);
+  if (!outer) return false;
+  int matrices = 0;
+  double density = 0.0;
+  for (const Element* part = e.FirstChildElement("solid"); part != nullptr;
+       part = part->NextSiblingElement("solid")) {
+    file_.xml.mark_read(*part);
+    const std::string kind = file_.type(*part);
+    density += file_.number(*part, "density").value_or(1.0);
+    if (is_fibre(kind)) {
+      if (!put_fibre(*part, kind, *outer)) return false;
+      continue;
+    }
+    if (kind.find("fiber") != std::string::npos) {
+      file_.refuse(*part, format("fibres of type {} are not read", quote(kind)),
+                   "Fibres are fiber-exp-pow, fiber-pow-linear and fiber-exp-linear, and the same "
+                   "uncoupled.");
+      return false;
+    }
+    if (++matrices > 1) {
+      file_.refuse(*part, "a mixture of two materials that are not fibres is not read",
+                   "Give one of them, and fibres.");
+      return false;
+    }
+    if (!put_matrix(*part, kind, *outer)) return false;
+  }
+  if (matrices == 0) {
+    file_.refuse(e, "a mixture of fibres alone is not read", "Give one material and fibres.");
     return false;
   }
-  SourceNode fibre = make.map();
-  make.put(fibre, "law", make.text("toe"));
-  make.put(fibre, "c3", make.number(file.number(e, "c3").value_or(0.0)));
-  make.put(fibre, "c4", make.number(file.number(e, "c4").value_or(0.0)));
-  make.put(fibre, "c5", make.number(file.number(e, "c5").value_or(0.0)));
-  make.put(fibre, "straight_stretch", make.number(file.number(e, "lam_max").value_or(1.0)));
-  make.put(fibre, "direction", make.direction(*a));
-  make.put(node, "fibre", std::move(fibre));
+  for (const bool isochoric : isochoric_)
+    if (isochoric != uncoupled_) {
+      file_.refuse(e, "a mixture of materials with coupled and with uncoupled response is not read",
+                   uncoupled_ ? "Use uncoupled fibres." : "Use fibres that are not uncoupled.");
+      return false;
+    }
+  // The bulk modulus of the mixture, if it has one, stands for those of its parts.
+  if (const double own = file_.number(e, "k").value_or(0.0); own != 0.0 && uncoupled_) bulk_ = own;
+  if (sum_of_coupled_) {
+    // FEBio's rule, also where the mixture has a density.
+    make_.put(node_, "density", make_.number(density));
+    if (file_.number(e, "density").value_or(density) != density)
+      file_.approximated(e, format("the density of a solid mixture is the sum of those of its "
+                                   "parts, {:g}; those without one have 1",
+                                   density));
+  }
   return true;
 }
 
-void FebSolids::read_material(const Element& e, const std::string& type) {
+std::optional<SourceNode> FebLaw::read(const std::string& type) {
+  const bool mixture = type == "solid mixture" || type == "uncoupled solid mixture";
+  if (!(mixture ? put_mixture(at_, type) : put_matrix(at_, type, Mat3::Identity())))
+    return std::nullopt;
+  if (uncoupled_) make_.put(node_, "bulk_modulus", make_.number(bulk_));
+  if (fibres_.size() == 1) make_.put(node_, "fibre", std::move(fibres_[0]));
+  if (fibres_.size() > 1) make_.put(node_, "fibre", make_.list(std::move(fibres_)));
+  if (!sum_of_coupled_)
+    make_.put(node_, "density", make_.number(file_.number(at_, "density").value_or(1.0)));
+  return std::move(node_);
+}
+
+void FebSolids::read_material(const XmlFile::Element& e, const std::string& type) {
   FebFile& file = model_.file;
   const std::string given = file.xml.text(e, "name").value_or("");
   const auto id = file.id(e);
   const std::string name = given.empty() ? format("material{}", id.value_or(0)) : given;
-  const NodeBuilder make = file.make(e);
-  FebMaterial material;
-  material.node = make.map();
-  const auto put = [&](const char* kind) { make.put(material.node, "type", make.text(kind)); };
-  const auto number = [&](const char* tag) { return file.number(e, tag).value_or(0.0); };
-  const double density = file.number(e, "density").value_or(1.0);
-  bool sound = true;
-  if (type == "neo-hookean") {
-    put("neo_hookean");
-    sound = put_isotropic(e, make, material.node);
-  } else if (type == "isotropic elastic" || type == "st.venant-kirchhoff") {
-    put("elastic");
-    sound = put_isotropic(e, make, material.node);
-  } else if (type == "mooney-rivlin" || type == "trans iso mooney-rivlin") {
-    put("mooney_rivlin_uncoupled");
-    make.put(material.node, "c1", make.number(number("c1")));
-    make.put(material.node, "c2", make.number(number("c2")));
-    make.put(material.node, "bulk_modulus", make.number(number("k")));
-    material.uncoupled = true;
-    if (type == "trans iso mooney-rivlin") sound = put_fibre(e, make, material.node);
-  } else if (type == "coupled mooney-rivlin") {
-    put("mooney_rivlin");
-    make.put(material.node, "c1", make.number(number("c1")));
-    make.put(material.node, "c2", make.number(number("c2")));
-    // The bulk term of FEBio is k/2 ln(J)^2, that of the model (lame - 4 c2)/2 ln(J)^2.
-    make.put(material.node, "lame", make.number(number("k") + 4.0 * number("c2")));
-  } else {
-    file.refuse(e, format("the material {} of type {} is not read", quote(name), quote(type)),
-                "Materials are rigid body, neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, "
-                "Mooney-Rivlin, trans iso Mooney-Rivlin and coupled Mooney-Rivlin.");
-    return;
-  }
-  make.put(material.node, "density", make.number(density));
+  FebLaw law(file, e, name);
+  std::optional<SourceNode> node = law.read(type);
+  if (!node) return;
   if (materials_.contains(name)) {
     file.xml.fault(e, format("the material {} stands twice", quote(name)), "Rename one of them.");
     return;
   }
-  if (!sound) return;
+  FebMaterial material;
+  material.node = std::move(*node);
+  material.uncoupled = law.uncoupled();
   material.name = file.name(e, name, material_names_);
   materials_.emplace(name, std::move(material));
 }

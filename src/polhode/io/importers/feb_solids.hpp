@@ -95,8 +95,6 @@ class FebSolids {
   void put_contact(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
   SourceNode write_solid(const FebSolid& solid);
   void put_bonds(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
-  bool put_isotropic(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
-  bool put_fibre(const XmlFile::Element& e, const NodeBuilder& make, SourceNode& node);
   /// Body of a node, or the ground of a fixed one; "" if it has neither.
   [[nodiscard]] std::string holder(int node) const;
   /// Lets a boundary condition hold a component of nodes.

@@ -76,7 +76,7 @@ class SectionReader {
                          [&](const auto& name) { return spec.parameters.contains(name); });
     };
     const auto sets = solids::isotropic_alternatives();
-    if (spec.fibre || std::none_of(sets.begin(), sets.end(), is_isotropic)) {
+    if (!spec.fibres.empty() || std::none_of(sets.begin(), sets.end(), is_isotropic)) {
       section_.fault("material",
                      format("{} is {}, without the two moduli of an isotropic material",
                             quote(spec.name), spec.type),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/compile/solid_parts.hpp>
 #include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/solids/materials/registry.hpp>
 
@@ -29,7 +30,7 @@ class MaterialReader {
         material_.parameters[field.name] = *value;
     }
     if (const SourceNode* value = section_.find("viscosity")) read_viscosity(*value);
-    if (const SourceNode* value = section_.find("fibre")) read_fibre(*value);
+    if (const SourceNode* value = section_.find("fibre")) read_fibres(*value);
     if (context_.diagnostics.size() == before) check();
   }
 
@@ -47,8 +48,19 @@ class MaterialReader {
     section.read_into(v);
   }
 
-  void read_fibre(const SourceNode& node) {
+  void read_fibres(const SourceNode& node) {
     const std::string path = section_.path("fibre");
+    if (!node.is_list()) {
+      read_fibre(node, path);
+      return;
+    }
+    if (node.children.empty())
+      context_.fault(node, path, "is an empty list", "Leave it out, or list a family of fibres.");
+    for (std::size_t k = 0; k < node.children.size(); ++k)
+      read_fibre(node.children[k], format("{}.{}", path, k));
+  }
+
+  void read_fibre(const SourceNode& node, const std::string& path) {
     FibreSpec fibre;
     const FieldTable* table = read_kind(context_, node, context_.tree.place_of(node), path,
                                         fibre_tables(), fibre.law, "law");
@@ -58,7 +70,7 @@ class MaterialReader {
       if (field.kind == FieldKind::kNumber)
         if (const auto value = section.number(field.name)) fibre.parameters[field.name] = *value;
     if (const auto direction = section.direction("direction")) fibre.direction = *direction;
-    material_.fibre = std::move(fibre);
+    material_.fibres.push_back(std::move(fibre));
   }
 
   /// Checks by the law itself, such as incompatible moduli.

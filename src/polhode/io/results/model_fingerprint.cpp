@@ -155,7 +155,7 @@ class Fingerprint {
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
   void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }
   void one(const MaterialSpec& m) {
-    add(m.name, m.type, m.parameters, m.density, m.viscosity, m.fibre);
+    add(m.name, m.type, m.parameters, m.density, m.viscosity, m.fibres);
   }
   void one(const MeshSpec& m) {
     add(m.type, m.group, m.scale, m.parameters, m.nodes, m.elements, m.sets, m.position,

@@ -47,6 +47,7 @@ enum class FieldKind : unsigned char {
   kBeamBonds,      ///< A map from bodies to ends of a beam.
   kAttachments,    ///< A list of points on bodies.
   kSection,        ///< A map with a table of its own.
+  kSections,       ///< Such a map, or a list of them.
   kNamed,          ///< A map from names the user chooses to sections.
   kShapes,         ///< A shape or a list of shapes.
   kInertiaTensor,  ///< Three principal moments, or a map of the tensor's entries.

@@ -88,8 +88,8 @@ KindTable material_table(const std::string& name, const solids::MaterialKind& ki
                                 .standard = "none",
                                 .table = "viscosity"},
                                {.name = "fibre",
-                                .kind = kSection,
-                                .meaning = "Fibres that carry tension only.",
+                                .kind = kSections,
+                                .meaning = "Fibres that carry tension only; several families.",
                                 .standard = "none",
                                 .table = "fibre"}});
   return result;

@@ -139,6 +139,10 @@ json field_schema(const FieldTable& table, const Field& field) {
       const json shape = reference("shape");
       return {{"anyOf", json::array({shape, list_of(shape, 1, 0)})}};
     }
+    case kSections: {
+      const json one = reference(field.table);
+      return {{"anyOf", json::array({one, list_of(one, 1, 0)})}};
+    }
     case kSelection:
       return reference("selections");
     case kBonds:

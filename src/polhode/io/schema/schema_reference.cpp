@@ -85,6 +85,8 @@ std::string form(const Field& field) {
       return "min, max, or number";
     case kShapes:
       return "shape, or list of shapes";
+    case kSections:
+      return "map or list of maps, see " + field.table;
     case kInertiaTensor:
       return "3 numbers, or map";
     case kStep:

@@ -30,10 +30,10 @@ struct Block {
   int number;
   const int* nodes;
   const double* points;
-  int present;  ///< Number of elements without padding.
-  P fibre[3]{};
-  P u_0[R][3], u_1[R][3];  ///< Displacements of nodes, then enhanced modes.
-  P v[R][3];               ///< Velocities at t_{n+αf}; only with viscosity.
+  int present;                     ///< Number of elements without padding.
+  const double* fibres = nullptr;  ///< Directions: 3 packs by family.
+  P u_0[R][3], u_1[R][3];          ///< Displacements of nodes, then enhanced modes.
+  P v[R][3];                       ///< Velocities at t_{n+αf}; only with viscosity.
 
   Block(const ElementData& data, const ElementStep& step, int b, bool rates) : number(b) {
     nodes = data.nodes + static_cast<long>(b) * W * N;
@@ -42,8 +42,7 @@ struct Block {
     const double* X = data.X + static_cast<long>(b) * W * 3 * N;
     gather<P, N>(nodes, step.x_n, X, u_0);
     gather<P, N>(nodes, step.x_n1, X, u_1);
-    if (data.fibres)
-      for (int i = 0; i < 3; ++i) fibre[i] = load<P>(data.fibres + (3L * b + i) * W);
+    if (data.fibres) fibres = data.fibres + 3L * data.family_count * b * W;
     if (rates) {
       P v_1[N][3];
       gather<P, N>(nodes, step.v_n, nullptr, v);
@@ -200,11 +199,11 @@ struct BlockForces {
       least_volume = J >= least_volume ? least_volume : J;
       const StressEnds<P> ends = m.ends(alpha_f, data.conserving);
       P S[6], D[36];
-      stress_between<P>(data, block.fibre, !kMean, ends.E_a, ends.E_b, S, kTangent ? D : nullptr);
+      stress_between<P>(data, block.fibres, !kMean, ends.E_a, ends.E_b, S, kTangent ? D : nullptr);
       if (kTangent && ends.factor != 1.0)
         for (P& entry : D) entry *= ends.factor;
       if (data.conserving && alpha_f != 0.5 && alpha_f != 1.0)
-        add_shift<P>(data, block.fibre, !kMean, alpha_f - 0.5, m.E_0, m.E_1, S,
+        add_shift<P>(data, block.fibres, !kMean, alpha_f - 0.5, m.E_0, m.E_1, S,
                      kTangent ? D : nullptr);
       P S_geometric[6];
       P F_t[9];

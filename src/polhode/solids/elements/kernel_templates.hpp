@@ -113,12 +113,14 @@ double advance_elements(const ElementData& data, const ElementStep& step, const 
 
 /// Energy density of a point, without the volumetric energy if that is averaged.
 template <class P>
-inline P energy_density(const ElementData& data, const P* fibre, bool whole, const P* E) {
+inline P energy_density(const ElementData& data, const double* fibres, bool whole, const P* E) {
   P W{};
   data.law_kernel.energy(data.law, whole, numbers(E), numbers(&W));
-  if (data.fibres)
-    data.fibre_kernel.add_energy(data.fibre, data.uncoupled, numbers(fibre), numbers(E),
-                                 numbers(&W));
+  for (int f = 0; f < data.family_count; ++f) {
+    const FibreFamily& family = data.families[f];
+    family.kernel.add_energy(family.law, data.uncoupled, family.dispersion,
+                             fibres + 3 * kWidth<P> * f, numbers(E), numbers(&W));
+  }
   return W;
 }
 
@@ -153,7 +155,7 @@ void element_work(const ElementData& data, const ElementStep& step, double* stor
       volume += w;
       displacement_gradient<P, B::R>(block.u_1, G, H);
       green_strain(H, E);
-      energy += w * energy_density<P>(data, block.fibre, !kMean, E);
+      energy += w * energy_density<P>(data, block.fibres, !kMean, E);
       if (data.viscous) {
         P H_0[9], F[9], F_dot[9], rate[6];
         displacement_gradient<P, B::R>(block.u_0, G, H_0);
@@ -200,7 +202,7 @@ void sample_elements(const ElementData& data, const ElementStep& step, double* s
       green_strain(H, E);
       add_identity(H, F);
       const P J = determinant(F);
-      stress_between<P>(data, block.fibre, !kMean, E, E, S, nullptr);
+      stress_between<P>(data, block.fibres, !kMean, E, E, S, nullptr);
       if constexpr (kMean) {
         const VolumeGradient<P> gradient(StrainPair<P>(E, E), J, J);
         for (int i = 0; i < 6; ++i) S[i] += p * gradient.g[i];
@@ -215,7 +217,7 @@ void sample_elements(const ElementData& data, const ElementStep& step, double* s
         sum[k] += w * point[k];
         sum[6 + k] += w * ((k < 3 ? 1.0 : 0.0) + 2.0 * E[k]);
       }
-      point[6] = energy_density<P>(data, block.fibre, !kMean, E) + U;
+      point[6] = energy_density<P>(data, block.fibres, !kMean, E) + U;
       sum[12] += w * point[6];
       sum[13] += w;
       if (!nodal) continue;

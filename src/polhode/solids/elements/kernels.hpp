@@ -7,6 +7,13 @@
 
 namespace polhode::solids {
 
+/// A family of fibres for the kernels.
+struct FibreFamily {
+  const void* law = nullptr;
+  FibreKernel kernel{};
+  double dispersion = 0.0;
+};
+
 /// Data of a group of elements for the kernels. Elements are stored in blocks of the width of a
 /// pack; the last block is padded with its last element. Packs are consecutive.
 struct ElementData {
@@ -16,12 +23,12 @@ struct ElementData {
   const double* X = nullptr;         ///< Block: 3n packs, reference positions.
   const double* points = nullptr;    ///< Block: by point, weight and 3 packs a row, see Rows.
   const double* volumes = nullptr;   ///< Block: a pack.
-  const double* fibres = nullptr;    ///< Block: 3 packs; null without fibres.
+  const double* fibres = nullptr;    ///< Block: 3 packs by family; null without fibres.
   const double* to_nodes = nullptr;  ///< n × points, from values at points to those at nodes.
   const void* law = nullptr;
-  const void* fibre = nullptr;
+  const FibreFamily* families = nullptr;
+  int family_count = 0;
   LawKernel law_kernel{};
-  FibreKernel fibre_kernel{};
   VolumeKernel volume_kernel{};
   bool uncoupled = false;
   double bulk = 0.0;       ///< Of the volumetric energy, if uncoupled [Pa].

@@ -87,23 +87,26 @@ struct StressEnds {
 };
 
 /// Stress of material and fibres together. D may be null.
+/// @param fibres  Directions: 3 packs by family.
 template <class P>
-inline void stress_between(const ElementData& data, const P* fibre, bool whole, const P* E_a,
+inline void stress_between(const ElementData& data, const double* fibres, bool whole, const P* E_a,
                            const P* E_b, P* S, P* D) {
   double* d = D ? numbers(D) : nullptr;
   data.law_kernel.stress(data.law, whole, numbers(E_a), numbers(E_b), numbers(S), d);
-  if (data.fibres)
-    data.fibre_kernel.add_stress(data.fibre, data.uncoupled, numbers(fibre), numbers(E_a),
-                                 numbers(E_b), numbers(S), d);
+  for (int f = 0; f < data.family_count; ++f) {
+    const FibreFamily& family = data.families[f];
+    family.kernel.add_stress(family.law, data.uncoupled, family.dispersion,
+                             fibres + 3 * kWidth<P> * f, numbers(E_a), numbers(E_b), numbers(S), d);
+  }
 }
 
 /// Adds (α_f − 1/2)(S_1 − S_0): second order for ρ∞ < 1. @eq{solid-stress-alpha}
 template <class P>
-inline void add_shift(const ElementData& data, const P* fibre, bool whole, double shift,
+inline void add_shift(const ElementData& data, const double* fibres, bool whole, double shift,
                       const P* E_0, const P* E_1, P* S, P* D) {
   P S_0[6], S_1[6], D_1[36];
-  stress_between<P>(data, fibre, whole, E_0, E_0, S_0, nullptr);
-  stress_between<P>(data, fibre, whole, E_1, E_1, S_1, D ? D_1 : nullptr);
+  stress_between<P>(data, fibres, whole, E_0, E_0, S_0, nullptr);
+  stress_between<P>(data, fibres, whole, E_1, E_1, S_1, D ? D_1 : nullptr);
   for (int i = 0; i < 6; ++i) S[i] += shift * (S_1[i] - S_0[i]);
   if (D)
     for (int i = 0; i < 36; ++i) D[i] += 2.0 * shift * D_1[i];

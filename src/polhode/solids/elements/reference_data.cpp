@@ -37,7 +37,7 @@ Vec3 enhanced_gradient(const Mat3& J_0_inverse_transposed, double j_0, double j,
 
 ReferenceData::ReferenceData(const std::string& where, const ElementKind& kind,
                              std::span<const int> connectivity, std::span<const Vec3> positions,
-                             std::span<const Vec3> directions, int width)
+                             int families, std::span<const Vec3> directions, int width)
     : elements(static_cast<int>(connectivity.size()) / kind.sizes().nodes),
       blocks((elements + width - 1) / width),
       nodes(connectivity.begin(), connectivity.end()),
@@ -45,7 +45,7 @@ ReferenceData::ReferenceData(const std::string& where, const ElementKind& kind,
       points(static_cast<std::size_t>(blocks) * width * kind.sizes().points *
              kind.sizes().point_packs()),
       volumes(static_cast<std::size_t>(blocks) * width),
-      fibres(directions.empty() ? 0 : static_cast<std::size_t>(blocks) * width * 3) {
+      fibres(directions.empty() ? 0 : static_cast<std::size_t>(blocks) * width * 3 * families) {
   const ElementSizes& sizes = kind.sizes();
   const CellShape& cell = kind.cell();
   const int n = sizes.nodes;
@@ -68,10 +68,12 @@ ReferenceData::ReferenceData(const std::string& where, const ElementKind& kind,
       for (int i = 0; i < 3; ++i)
         X.data()[(static_cast<std::size_t>(b) * 3 * n + 3 * a + i) * width + l] =
             positions[own[a]][i];
-    if (!directions.empty()) {
-      const Vec3& d = directions[directions.size() == 1 ? 0 : real];
+    const bool same = directions.size() == static_cast<std::size_t>(families);
+    for (int f = 0; f < families; ++f) {
+      const Vec3& d = directions[static_cast<std::size_t>((same ? 0 : real * families) + f)];
       for (int i = 0; i < 3; ++i)
-        fibres.data()[(static_cast<std::size_t>(b) * 3 + i) * width + l] = d.normalized()[i];
+        fibres.data()[((static_cast<std::size_t>(b) * families + f) * 3 + i) * width + l] =
+            d.normalized()[i];
     }
     const Mat3 J_0 = reference_jacobian(at_centre, own, positions);
     const double j_0 = J_0.determinant();

@@ -37,10 +37,11 @@ struct ReferenceData {
   AlignedNumbers X, points, volumes, fibres;
   double volume = 0.0;
 
-  /// @param fibres  None, one for all, or one per element.
+  /// @param families  Number of families of fibres.
+  /// @param fibres  Direction of each family, the same in all elements or element after element.
   /// @throws InputError if an element is inverted or flat.
   ReferenceData(const std::string& where, const ElementKind& kind, std::span<const int> nodes,
-                std::span<const Vec3> X, std::span<const Vec3> fibres, int width);
+                std::span<const Vec3> X, int families, std::span<const Vec3> fibres, int width);
 };
 
 /// ∂X/∂ξ at a reference point, for nodes X of one element.

@@ -16,10 +16,24 @@ inline P* packs(double* p) {
   return reinterpret_cast<P*>(p);
 }
 
-/// Adds ½ K ln² J, as a function of c = J². @eq{solid-discrete-volume}
-template <class P>
+template <class Law>
+constexpr VolumeRule volume_rule() {
+  if constexpr (requires { Law::kVolume; })
+    return Law::kVolume;
+  else
+    return VolumeRule::kLogarithm;
+}
+
+/// Adds ½ K ln² J, or ½ K ((J² − 1)/2 − ln J), as a function of c = J². @eq{solid-discrete-volume}
+template <class P, VolumeRule kRule>
 inline void add_volume(double K, const StrainPair<P>& e, Coefficients<P>& a) {
   const LogDifference<P> l(e.at_n.s, e.at_n1.s);
+  if constexpr (kRule == VolumeRule::kSquare) {
+    a.p -= 0.25 * K * l.minus_one;
+    a.q -= 0.25 * K * l.minus_one;
+    a.dq.c -= 0.25 * K * l.derivative;
+    return;
+  }
   const P f = 0.125 * K * (l.log_0 + l.log_1);
   a.p += f * l.value;
   a.q += f * l.value;
@@ -31,11 +45,19 @@ void law_stress(const void* law, bool whole, const double* E_0, const double* E_
                 double* D) {
   const Law& m = *static_cast<const Law*>(law);
   const StrainPair<P> e(packs<P>(E_0), packs<P>(E_1));
-  Coefficients<P> a = m.stress(e);
-  if constexpr (Law::kUncoupled) {
-    if (whole) add_volume(m.bulk, e, a);
+  const auto write = [&](Coefficients<P> a) {
+    if constexpr (Law::kUncoupled) {
+      if (whole) add_volume<P, volume_rule<Law>()>(m.bulk, e, a);
+    }
+    write_stress(e, a, packs<P>(S), D ? packs<P>(D) : nullptr);
+  };
+  if constexpr (requires { Law::kPrincipal; }) {
+    const PrincipalPair<P> pair(e);
+    write(m.stress(e, pair));
+    m.add_principal(e, pair, packs<P>(S), D ? packs<P>(D) : nullptr);
+  } else {
+    write(m.stress(e));
   }
-  write_stress(e, a, packs<P>(S), D ? packs<P>(D) : nullptr);
 }
 
 template <class P, class Law>
@@ -44,7 +66,9 @@ void law_energy(const void* law, bool whole, const double* E, double* W) {
   const Strain<P> e(packs<P>(E));
   P w = m.energy(e);
   if constexpr (Law::kUncoupled) {
-    if (whole) {
+    if (whole && volume_rule<Law>() == VolumeRule::kSquare) {
+      w += 0.25 * m.bulk * log1p_lack(e.s);
+    } else if (whole) {
       const P L = log1p(e.s);
       w += 0.125 * m.bulk * L * L;
     }
@@ -52,12 +76,15 @@ void law_energy(const void* law, bool whole, const double* E, double* W) {
   *packs<P>(W) = w;
 }
 
-/// A ⊗ A as six numbers, and its product with a symmetric tensor.
+/// κ I + (1 − 3κ) A ⊗ A as six numbers, and its product with a symmetric tensor.
+/// @eq{solid-fibre-dispersion}
 template <class P>
 struct FibreDyad {
   P a[6];
-  explicit FibreDyad(const P* A)
-      : a{A[0] * A[0], A[1] * A[1], A[2] * A[2], A[0] * A[1], A[1] * A[2], A[2] * A[0]} {}
+  FibreDyad(const P* A, double kappa)
+      : a{A[0] * A[0], A[1] * A[1], A[2] * A[2], A[0] * A[1], A[1] * A[2], A[2] * A[0]} {
+    for (int i = 0; i < 6; ++i) a[i] = (1.0 - 3.0 * kappa) * a[i] + (i < 3 ? kappa : 0.0);
+  }
   P dot(const P* E) const {
     return a[0] * E[0] + a[1] * E[1] + a[2] * E[2] +
            2.0 * (a[3] * E[3] + a[4] * E[4] + a[5] * E[5]);
@@ -66,11 +93,11 @@ struct FibreDyad {
 
 /// @eq{solid-fibre-stress}
 template <class P, class Law>
-void fibre_add_stress(const void* law, bool uncoupled, const double* A, const double* E_0,
-                      const double* E_1, double* S_out, double* D_out) {
+void fibre_add_stress(const void* law, bool uncoupled, double dispersion, const double* A,
+                      const double* E_0, const double* E_1, double* S_out, double* D_out) {
   const Law& m = *static_cast<const Law*>(law);
   const StrainPair<P> e(packs<P>(E_0), packs<P>(E_1));
-  const FibreDyad<P> dyad(packs<P>(A));
+  const FibreDyad<P> dyad(packs<P>(A), dispersion);
   P* S = packs<P>(S_out);
   P* D = D_out ? packs<P>(D_out) : nullptr;
   const LogDifference<P> l(e.at_n.s, e.at_n1.s);
@@ -121,29 +148,46 @@ void fibre_add_stress(const void* law, bool uncoupled, const double* A, const do
 }
 
 template <class P, class Law>
-void fibre_add_energy(const void* law, bool uncoupled, const double* A, const double* E,
-                      double* W) {
+void fibre_add_energy(const void* law, bool uncoupled, double dispersion, const double* A,
+                      const double* E, double* W) {
   const Law& m = *static_cast<const Law*>(law);
   const Strain<P> e(packs<P>(E));
-  const FibreDyad<P> dyad(packs<P>(A));
+  const FibreDyad<P> dyad(packs<P>(A), dispersion);
   P y = 2.0 * dyad.dot(e.E);
   if (uncoupled) y += expm1(P(-1.0 / 3.0 * log1p(e.s))) * (1.0 + y);
   *packs<P>(W) += m.energy(P(y > 0.0 ? y : P{}));
 }
 
-template <class P>
+template <class P, VolumeRule kRule>
 void volume_pressure(double K, const double* tau_0, const double* tau_1, double* p, double* dp) {
   const LogDifference<P> l(*packs<P>(tau_0), *packs<P>(tau_1));
+  if constexpr (kRule == VolumeRule::kSquare) {
+    *packs<P>(p) = 0.5 * K * (0.5 * (*packs<P>(tau_0) + *packs<P>(tau_1)) - l.minus_one);
+    *packs<P>(dp) = 0.5 * K * (0.5 - l.derivative);
+    return;
+  }
   const P f = 0.5 * K * (l.log_0 + l.log_1);
   *packs<P>(p) = f * l.value;
   *packs<P>(dp) = 0.5 * K * l.value / (1.0 + *packs<P>(tau_1)) + f * l.derivative;
 }
 
-template <class P>
+template <class P, VolumeRule kRule>
 void volume_energy(double K, const double* tau, double* U) {
+  if constexpr (kRule == VolumeRule::kSquare) {
+    const P t = *packs<P>(tau);
+    *packs<P>(U) = 0.5 * K * (0.5 * t * t + log1p_lack(t));
+    return;
+  }
   const P L = log1p(*packs<P>(tau));
   *packs<P>(U) = 0.5 * K * L * L;
 }
+
+template <class P>
+struct VolumeTable {
+  VolumeKernel entry[2] = {
+      {volume_pressure<P, VolumeRule::kLogarithm>, volume_energy<P, VolumeRule::kLogarithm>},
+      {volume_pressure<P, VolumeRule::kSquare>, volume_energy<P, VolumeRule::kSquare>}};
+};
 
 template <class P, class... Law>
 constexpr auto law_table(LawList<Law...>) {

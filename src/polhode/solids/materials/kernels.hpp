@@ -21,12 +21,14 @@ struct LawKernel {
 /// Functions of fibres along A (three packs, unit length), added to S, D and W.
 struct FibreKernel {
   /// @param uncoupled  The fibre is subject to the isochoric stretch.
-  void (*add_stress)(const void* law, bool uncoupled, const double* A, const double* E_0,
-                     const double* E_1, double* S, double* D);
-  void (*add_energy)(const void* law, bool uncoupled, const double* A, const double* E, double* W);
+  /// @param dispersion  κ of the mean square stretch of fibres spread about A.
+  void (*add_stress)(const void* law, bool uncoupled, double dispersion, const double* A,
+                     const double* E_0, const double* E_1, double* S, double* D);
+  void (*add_energy)(const void* law, bool uncoupled, double dispersion, const double* A,
+                     const double* E, double* W);
 };
 
-/// ½ K ln² θ of the mean volume ratio θ = 1 + tau of an element, over a step.
+/// Volumetric energy of the mean volume ratio θ = 1 + tau of an element, over a step.
 struct VolumeKernel {
   /// Pressure U[θ_0, θ_1] and its derivative by θ_1. [Pa]
   void (*pressure)(double K, const double* tau_0, const double* tau_1, double* p, double* dp);
@@ -39,7 +41,7 @@ struct MaterialKernels {
   int width;         ///< Doubles in a pack.
   const LawKernel* laws;
   const FibreKernel* fibres;
-  VolumeKernel volume;
+  const VolumeKernel* volumes;  ///< In the order of VolumeRule.
 };
 
 /// Kernels of an instruction set: "automatic" chooses the widest of this machine; else baseline,

@@ -9,12 +9,12 @@ namespace {
 using P = Pack<4>;
 constexpr auto kLaws = law_table<P>(MaterialLaws{});
 constexpr auto kFibres = fibre_table<P>(FibreLaws{});
+constexpr VolumeTable<P> kVolumes;
 
 }  // namespace
 
 extern const MaterialKernels kMaterialsAvx2;
-const MaterialKernels kMaterialsAvx2 = {
-    "avx2", 4, kLaws.entry, kFibres.entry, {volume_pressure<P>, volume_energy<P>}};
+const MaterialKernels kMaterialsAvx2 = {"avx2", 4, kLaws.entry, kFibres.entry, kVolumes.entry};
 
 }  // namespace polhode::solids
 

@@ -9,12 +9,12 @@ namespace {
 using P = Pack<8>;
 constexpr auto kLaws = law_table<P>(MaterialLaws{});
 constexpr auto kFibres = fibre_table<P>(FibreLaws{});
+constexpr VolumeTable<P> kVolumes;
 
 }  // namespace
 
 extern const MaterialKernels kMaterialsAvx512;
-const MaterialKernels kMaterialsAvx512 = {
-    "avx512", 8, kLaws.entry, kFibres.entry, {volume_pressure<P>, volume_energy<P>}};
+const MaterialKernels kMaterialsAvx512 = {"avx512", 8, kLaws.entry, kFibres.entry, kVolumes.entry};
 
 }  // namespace polhode::solids
 

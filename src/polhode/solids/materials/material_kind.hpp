@@ -13,6 +13,12 @@ namespace polhode::solids {
 /// Parameters by name, SI.
 using ParameterValues = std::map<std::string, double>;
 
+/// Volumetric energy of an uncoupled material.
+enum class VolumeRule : unsigned char {
+  kLogarithm,  ///< ½ K ln² J.
+  kSquare,     ///< ½ K ((J² − 1)/2 − ln J).
+};
+
 /// A type of material, or of fibre, in the model file.
 struct MaterialKind {
   std::string name;     ///< "type" of a material, "law" of a fibre in the model file.
@@ -23,6 +29,7 @@ struct MaterialKind {
   std::vector<std::vector<std::string>> alternatives = {};
   bool uncoupled = false;  ///< Volumetric and isochoric parts are uncoupled: required by hex8_q1p0.
   std::string also = {};   ///< Alias that is accepted.
+  VolumeRule volume = VolumeRule::kLogarithm;
 };
 
 /// Moduli of an isotropic material at small strains: S = λ tr E I + 2 μ E.

@@ -5,8 +5,8 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/solids/materials/isochoric.hpp>
 #include <polhode/solids/materials/material_kind.hpp>
-#include <polhode/solids/materials/strain_pair.hpp>
 
 namespace polhode::solids {
 
@@ -55,31 +55,15 @@ struct MooneyRivlinUncoupled {
 
   template <class P>
   [[nodiscard]] P energy(const Strain<P>& e) const {
-    const P L = log1p(e.s), y = e.t_less_log();
-    const Exponential<P> a(-1.0 / 3.0 * L), b(-2.0 / 3.0 * L);
-    // 2 t = 2 y + L = 2 y − 3 (−L/3), and 4 (t + II) = 4 (y + II) − 3 (−2L/3).
-    return c1 * (2.0 * y + 3.0 * a.excess + 2.0 * e.t * a.minus_one) +
-           c2 * (4.0 * (y + e.II) + 3.0 * b.excess + 4.0 * (e.t + e.II) * b.minus_one);
+    const IsochoricInvariants<P> i(e);
+    return c1 * i.first + c2 * i.second;
   }
   template <class P>
   [[nodiscard]] Coefficients<P> stress(const StrainPair<P>& e) const {
-    const LogDifference<P> l(e.at_n.s, e.at_n1.s);
-    const P c_1 = 1.0 + e.at_n1.s;
-    const PowerDifference<P> a(1.0 / 3.0, l, c_1), b(2.0 / 3.0, l, c_1);
-    // Means over the step: I₁ − 3, I₂ − 3, a − 1, b − 1.
-    const P i1 = 2.0 * e.t;
-    const P i2 = 2.0 * (e.at_n.t + e.at_n1.t + e.at_n.II + e.at_n1.II);
-    const P am = 0.5 * (a.minus_one_0 + a.minus_one_1), bm = 0.5 * (b.minus_one_0 + b.minus_one_1);
+    const IsochoricSlopes<P> slopes(e);
     Coefficients<P> r;
-    r.w2 = c2 * (1.0 + bm);
-    r.q = c1 * (3.0 + i1) * a.value + c2 * (3.0 + i2) * b.value;
-    r.p = c1 * (am - 1.0 / 3.0 * i1 + (3.0 + i1) * a.plus_p) +
-          c2 * (2.0 * bm - 2.0 / 3.0 * i2 + (3.0 + i2) * b.plus_p);
-    r.dw1.c = 0.5 * c1 * a.slope_1;
-    r.dw2.c = 0.5 * c2 * b.slope_1;
-    r.dq.c = c1 * (3.0 + i1) * a.derivative + c2 * (3.0 + i2) * b.derivative;
-    r.dq.i1 = 0.5 * c1 * a.value;
-    r.dq.i2 = 0.5 * c2 * b.value;
+    slopes.add_first(P(P{} + c1), r);
+    slopes.add_second(P(P{} + c2), r);
     return r;
   }
 };

@@ -12,6 +12,9 @@
 namespace polhode::solids {
 namespace {
 
+/// Parameter that all fibres have in common.
+constexpr const char* kDispersion = "dispersion";
+
 template <class... Law>
 std::vector<MaterialKind> kinds_of(LawList<Law...>) {
   return {Law::kind()...};
@@ -65,23 +68,30 @@ struct MaterialMaker {
         m->linear_ = law.linear();
       });
     });
-    if (!description.fibre.empty()) add_fibre(*m);
+    add_fibres(*m);
     m->viscous_ = viscous(*m);
     return m;
   }
 
  private:
-  void add_fibre(Material& m) const {
-    const std::string place = format("{}.fibre", where);
-    const MaterialKind& kind = find(fibre_kinds(), place, description.fibre, "law");
-    m.fibre_index_ = static_cast<int>(&kind - fibre_kinds().data());
-    const ParameterValues values = checked_values(place, kind, description.fibre_values);
-    told_at(place, [&] {
-      with_law(FibreLaws{}, m.fibre_index_, values, [&](const auto& law) {
-        static_assert(sizeof law <= sizeof m.fibre_);
-        std::memcpy(m.fibre_.data(), &law, sizeof law);
+  void add_fibres(Material& m) const {
+    const bool one = description.fibres.size() == 1;
+    for (std::size_t i = 0; i < description.fibres.size(); ++i) {
+      const FibreDescription& given = description.fibres[i];
+      const std::string place = one ? format("{}.fibre", where) : format("{}.fibre.{}", where, i);
+      const MaterialKind& kind = find(fibre_kinds(), place, given.law, "law");
+      const ParameterValues values = checked_values(place, kind, given.values);
+      Fibre fibre;
+      fibre.index = static_cast<int>(&kind - fibre_kinds().data());
+      fibre.dispersion = values.at(kDispersion);
+      told_at(place, [&] {
+        with_law(FibreLaws{}, fibre.index, values, [&](const auto& law) {
+          static_assert(sizeof law <= sizeof fibre.law);
+          std::memcpy(fibre.law.data(), &law, sizeof law);
+        });
       });
-    });
+      m.fibres_.push_back(fibre);
+    }
   }
 
   LinearModuli viscous(const Material& m) const {
@@ -111,7 +121,14 @@ const std::vector<MaterialKind>& material_kinds() {
 }
 
 const std::vector<MaterialKind>& fibre_kinds() {
-  static const std::vector<MaterialKind> kinds = kinds_of(FibreLaws{});
+  static const std::vector<MaterialKind> kinds = [] {
+    std::vector<MaterialKind> list = kinds_of(FibreLaws{});
+    for (MaterialKind& kind : list)
+      kind.parameters.push_back({kDispersion, "-", 0.0, 0.0, 1.0 / 3.0,
+                                 "κ: spread of the directions, from 0, all along one, to 1/3, all "
+                                 "alike"});
+    return list;
+  }();
   return kinds;
 }
 
@@ -147,17 +164,30 @@ struct alignas(64) Lanes {
 
 MaterialPoint discrete_stress(const Material& material, const Vec6& E_0, const Vec6& E_1,
                               const Vec3& A, bool whole) {
+  const std::vector<Vec3> all(material.fibres().size(), A);
+  return discrete_stress(material, E_0, E_1, std::span<const Vec3>(all), whole);
+}
+
+double strain_energy(const Material& material, const Vec6& E, const Vec3& A, bool whole) {
+  const std::vector<Vec3> all(material.fibres().size(), A);
+  return strain_energy(material, E, std::span<const Vec3>(all), whole);
+}
+
+MaterialPoint discrete_stress(const Material& material, const Vec6& E_0, const Vec6& E_1,
+                              std::span<const Vec3> A, bool whole) {
   const MaterialKernels& kernels = material_kernels("baseline");
   const int w = kernels.width;
   const Lanes<6> E0(E_0, w), E1(E_1, w);
-  const Lanes<3> a(A, w);
   Lanes<6> S;
   Lanes<36> D;
   kernels.laws[material.law_index()].stress(material.law(), whole, E0.value, E1.value, S.value,
                                             D.value);
-  if (material.has_fibres())
-    kernels.fibres[material.fibre_index()].add_stress(
-        material.fibre(), material.uncoupled(), a.value, E0.value, E1.value, S.value, D.value);
+  for (std::size_t f = 0; f < material.fibres().size(); ++f) {
+    const Fibre& fibre = material.fibres()[f];
+    const Lanes<3> a(A[f], w);
+    kernels.fibres[fibre.index].add_stress(fibre.law.data(), material.uncoupled(), fibre.dispersion,
+                                           a.value, E0.value, E1.value, S.value, D.value);
+  }
   MaterialPoint point;
   for (int i = 0; i < 6; ++i) {
     point.S[i] = S.value[i * w];
@@ -166,15 +196,17 @@ MaterialPoint discrete_stress(const Material& material, const Vec6& E_0, const V
   return point;
 }
 
-double strain_energy(const Material& material, const Vec6& E, const Vec3& A, bool whole) {
+double strain_energy(const Material& material, const Vec6& E, std::span<const Vec3> A, bool whole) {
   const MaterialKernels& kernels = material_kernels("baseline");
   const Lanes<6> e(E, kernels.width);
-  const Lanes<3> a(A, kernels.width);
   Lanes<1> W;
   kernels.laws[material.law_index()].energy(material.law(), whole, e.value, W.value);
-  if (material.has_fibres())
-    kernels.fibres[material.fibre_index()].add_energy(material.fibre(), material.uncoupled(),
-                                                      a.value, e.value, W.value);
+  for (std::size_t f = 0; f < material.fibres().size(); ++f) {
+    const Fibre& fibre = material.fibres()[f];
+    const Lanes<3> a(A[f], kernels.width);
+    kernels.fibres[fibre.index].add_energy(fibre.law.data(), material.uncoupled(), fibre.dispersion,
+                                           a.value, e.value, W.value);
+  }
   return W.value[0];
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/solids/materials/exponential_fibre.hpp>
+#include <polhode/solids/materials/fibre_difference.hpp>
+#include <polhode/solids/materials/material_kind.hpp>
+#include <polhode/solids/simd/pack.hpp>
 
 namespace polhode::solids {
 

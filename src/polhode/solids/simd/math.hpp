@@ -151,7 +151,9 @@ struct LogDifference {
   P log_0, log_1;  ///< ln c_0, ln c_1.
   P step;          ///< ln c_1 − ln c_0.
 
-  LogDifference(P s_0, P s_1) {
+  LogDifference(P s_0, P s_1) : LogDifference(s_0, s_1, log1p(s_0), log1p(s_1)) {}
+  /// With the logarithms at both ends.
+  LogDifference(P s_0, P s_1, P given_0, P given_1) : log_0(given_0), log_1(given_1) {
     const P sum = 2.0 + s_0 + s_1, difference = s_1 - s_0;
     const P inverse = 1.0 / sum;
     const P z = difference * inverse;
@@ -170,8 +172,6 @@ struct LogDifference {
     value = 2.0 * inverse * (1.0 + A);
     minus_one = (2.0 * A - (s_0 + s_1)) * inverse;
     derivative = inverse * (4.0 * (1.0 + s_0) * inverse * inverse * z * B - value);
-    log_0 = log1p(s_0);
-    log_1 = log1p(s_1);
     step = value * difference;
   }
 };
@@ -199,6 +199,43 @@ struct PowerDifference {
                  (half * l.value * (h.derivative - (1.0 + h.minus_one)) +
                   (1.0 + h.minus_one) * l.derivative);
     slope_1 = -p * (1.0 + minus_one_1) / c_1;
+  }
+};
+
+/// Square root of every lane.
+template <class P>
+inline P square_root(P x) {
+  P r;
+  for (int i = 0; i < kWidth<P>; ++i) r[i] = __builtin_sqrt(x[i]);
+  return r;
+}
+
+/// Three arguments x, y, z close to each other, for divided differences by Taylor's series about
+/// their mean m: f[x, y, z] = Σ_k f⁽ᵏ⁾(m)/k! h_{k−2}, with h the complete homogeneous polynomials
+/// of the distances from m. h_1 = 0.
+template <class P>
+struct CloseTriple {
+  P h_2, h_3, h_4;  ///< Of distances relative to m.
+
+  /// @param d  x/m − 1, y/m − 1, z/m − 1.
+  CloseTriple(P d_0, P d_1, P d_2) {
+    const P a = d_0 * d_0, b = d_1 * d_1, c = d_2 * d_2;
+    const P p_2 = a + b + c;
+    h_2 = 0.5 * p_2;
+    h_3 = (1.0 / 3.0) * (a * d_0 + b * d_1 + c * d_2);
+    h_4 = 0.25 * (a * a + b * b + c * c) + 0.125 * p_2 * p_2;
+  }
+  /// m^(2−q) times the difference of xᵠ.
+  [[nodiscard]] P power(double q) const {
+    const double second = 0.5 * q * (q - 1.0), fourth = second * (q - 2.0) * (q - 3.0) / 12.0;
+    return second + fourth * (h_2 + 0.2 * (q - 4.0) * (h_3 + (1.0 / 6.0) * (q - 5.0) * h_4));
+  }
+  /// m² times the difference of ln x.
+  [[nodiscard]] P log() const { return -0.5 - 0.25 * h_2 + 0.2 * h_3 - (1.0 / 6.0) * h_4; }
+  /// Whether the series is more accurate than quotients, for powers of an exponent q.
+  /// @param spread  (largest − smallest)/m.
+  [[nodiscard]] static auto is_close(P spread, double q) {
+    return spread * (2.0 + (q < 0.0 ? -q : q)) < 0.02;
   }
 };
 
