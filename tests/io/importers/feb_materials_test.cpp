@@ -19,7 +19,7 @@ using testing::HasSubstr;
 class FebMaterials : public FebFixture {
  protected:
   static std::string cube(const std::string& type, const std::string& inside) {
-    return feb(control("STATIC", 1, 1.0) +
+    return feb(control("DYNAMIC", 1, 1.0) +
                tag("Material", tag("material", inside, "id='1' name='m' type='" + type + "'")) +
                tag("Mesh", block(1, "part", Vec3::Zero(), Vec3::Ones())) +
                tag("MeshDomains", domain("part", "m")));
@@ -170,7 +170,8 @@ TEST_F(FebMaterials, MixturesHaveTheDensityAndTheBulkModulusOfTheirParts) {
                 "<k>40</k></solid>"));
   EXPECT_EQ(parts.materials[0].density, 900.0);
   EXPECT_EQ(parts.materials[0].parameters.at("bulk_modulus"), 100.0);
-  EXPECT_EQ(parts.solids[0].element, "");  // three-field elements, as FEBio has
+  EXPECT_EQ(parts.solids[0].element, "hex8_q1p0");  // three-field elements, as FEBio has
+  EXPECT_EQ(coupled.solids[0].element, "hex8_standard");
 }
 
 TEST_F(FebMaterials, WhatCannotBeReadIsNamed) {
@@ -190,6 +191,9 @@ TEST_F(FebMaterials, WhatCannotBeReadIsNamed) {
   EXPECT_THAT(said("Ogden", "<k>1</k>"), HasSubstr("has no stiffness"));
   EXPECT_THAT(said("Ogden", "<c1>1</c1><m1>2</m1><k>1</k><pressure_model>2</pressure_model>"),
               HasSubstr("only <pressure_model> 0 is read"));
+  EXPECT_THAT(said("uncoupled solid mixture",
+                   "<solid type='Holzapfel-Gasser-Ogden'><c>1</c><k>9</k></solid>"),
+              HasSubstr("in an uncoupled mixture is not read"));
   EXPECT_THAT(said("Holzapfel-Gasser-Ogden",
                    "<c>1</c><k1>1</k1><k2>1</k2><k>9</k><mat_axis type='local'>1,2,4</mat_axis>"),
               HasSubstr("<mat_axis> of type 'local' is not read"));

@@ -39,7 +39,8 @@ TEST(ReadSolids, ResolvesMaterialsToSi) {
 TEST(ReadSolids, TakesOneFamilyOfFibresOrAList) {
   const auto read = [](const std::string& fibre) {
     return io::read_model_text(
-        "format: 1\nmaterials: {m: {type: neo_hookean, youngs_modulus: 1, "
+        "format: 1\nbodies: {b: {fixed: true}}\nmaterials: {m: {type: neo_hookean, youngs_modulus: "
+        "1, "
         "poisson_ratio: 0.3, fibre: " +
             fibre + "}}\n",
         "model.yaml");

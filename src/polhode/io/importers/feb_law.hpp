@@ -38,7 +38,9 @@ class FebLaw {
   bool put_matrix(const Element& e, const std::string& type, const Mat3& outer);
   bool put_isotropic(const Element& e);
   bool put_ogden_terms(const Element& e);
-  /// Adds k to the bulk modulus. @param model  Number of the pressure model that is read.
+  /// Whether a material has the pressure model that is read; else an error.
+  bool has_pressure_model(const Element& e, int model);
+  /// Adds k to the bulk modulus.
   bool add_bulk(const Element& e, int model);
   bool put_fibre(const Element& e, const std::string& type, const Mat3& outer);
   bool put_arterial_fibres(const Element& e, const Mat3& outer);

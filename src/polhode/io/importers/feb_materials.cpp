@@ -33,14 +33,18 @@ bool FebLaw::put_ogden_terms(const Element& e) {
   return false;
 }
 
-bool FebLaw::add_bulk(const Element& e, int model) {
-  uncoupled_ = true;
-  bulk_ += file_.number(e, "k").value_or(0.0);
+bool FebLaw::has_pressure_model(const Element& e, int model) {
   const Element* given = file_.child(e, "pressure_model");
   if (given == nullptr || file_.number(e, "pressure_model") == model) return true;
   file_.refuse(*given, format("only <pressure_model> {} is read of this material", model),
                "Leave it out.");
   return false;
+}
+
+bool FebLaw::add_bulk(const Element& e, int model) {
+  uncoupled_ = true;
+  bulk_ += file_.number(e, "k").value_or(0.0);
+  return has_pressure_model(e, model);
 }
 
 bool FebLaw::put_matrix(const Element& e, const std::string& type, const Mat3& outer) {
@@ -110,6 +114,7 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
   sum_of_coupled_ = type == "solid mixture";
   const std::optional<Mat3> outer = axes(e);
   if (!outer) return false;
+  if (!has_pressure_model(e, 0)) return false;
   int matrices = 0;
   double density = 0.0;
   for (const Element* part = e.FirstChildElement("solid"); part != nullptr;
@@ -125,6 +130,11 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
       file_.refuse(*part, format("fibres of type {} are not read", quote(kind)),
                    "Fibres are fiber-exp-pow, fiber-pow-linear and fiber-exp-linear, and the same "
                    "uncoupled.");
+      return false;
+    }
+    if (!sum_of_coupled_ && kind == "holzapfel-gasser-ogden") {
+      file_.refuse(*part, "Holzapfel-Gasser-Ogden in an uncoupled mixture is not read",
+                   "Give it by itself: the mixture has another pressure.");
       return false;
     }
     if (++matrices > 1) {
