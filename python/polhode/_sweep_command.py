@@ -7,10 +7,13 @@ import argparse
 import importlib
 import os
 import sys
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 from ._errors import ModelError
 from ._text import Written
+
+if TYPE_CHECKING:
+    from ._model import Model
 
 _EXAMPLES = """\
 A parameter is a variable of the model or a path, and its values:
@@ -108,6 +111,23 @@ def main(arguments: "Optional[list[str]]" = None) -> int:
     return 2
 
 
+def _check_outcomes(model: Model, outcomes: "list[str]", paths: "list[str]", changes: "dict[str, Any]") -> None:
+    """Raises ModelError for outcomes or parameters without gradient, by a run of one step."""
+    from ._gradient import gradient
+
+    step = model.analysis.get("step", "1 ms")
+    once = {**changes, "analysis.duration": step}
+    at_end = [f"{text.partition('@')[0]}@end" if _is_number(text.partition("@")[2]) else text for text in outcomes]
+    gradient(model, at_end, paths, overrides=once, error_bars=False)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return float(text) >= 0
+    except ValueError:
+        return False
+
+
 def _sweep(given: argparse.Namespace) -> int:
     from ._measure import measure
     from ._model import load
@@ -138,6 +158,8 @@ def _sweep(given: argparse.Namespace) -> int:
                 measure(beginning, text)
             except (KeyError, ValueError) as error:
                 raise _Usage(f"--output {text}: {error.args[0]}") from None
+    if given.gradient:
+        _check_outcomes(model, given.gradient, list(parameters), first)
     client: Any = None
     if given.dask:
         client = importlib.import_module("distributed").Client(given.dask)

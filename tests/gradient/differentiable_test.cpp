@@ -64,8 +64,6 @@ TEST(RequireDifferentiable, RefusesSettingsByName) {
   EXPECT_THAT(refusal_of({.analysis = "tolerance: 1e-6"}),
               HasSubstr("analysis.step: is automatic: the lengths of the steps would depend on the "
                         "parameters. Give a fixed step for a gradient"));
-  EXPECT_THAT(refusal_of({.analysis = "step: 10 ms, rho_inf: 0.8"}),
-              HasSubstr("analysis.rho_inf: is 0.8, but gradients exist for rho_inf: 1 only"));
   EXPECT_THAT(refusal_of({.analysis = "step: 10 ms, method: extrapolation, order: 4"}),
               HasSubstr("analysis.method: is extrapolation, which has no gradient yet"));
   EXPECT_THAT(refusal_of({.analysis = "step: 10 ms, momentum_rate: kinematic"}),
@@ -175,7 +173,12 @@ TEST(RequireDifferentiable, RefusesDrivesWhoseVelocityJumps) {
 
 TEST(GradientParameters, AreRefusedByNameIfTheyAreNoNumbers) {
   EXPECT_THAT(refusal_of({}, "bodies.rod.weight"),
-              HasSubstr("bodies.rod.weight: is not in the model"));
+              HasSubstr("bodies.rod.weight: is not in the model. Name a variable"));
+  EXPECT_THAT(
+      refusal_of({}, "body.rdo.mas"),
+      HasSubstr("body.rdo.mas: is not in the model. Did you mean 'bodies.rod.mass'? Name a"));
+  EXPECT_THAT(refusal_of({.more = "variables: {speed: 2}\n"}, "spede"),
+              HasSubstr("spede: is not in the model. Did you mean 'speed'?"));
   EXPECT_THAT(refusal_of({}, "bodies.rod.position"),
               HasSubstr("bodies.rod.position: is a list, no number. Name one of its numbers"));
   EXPECT_THAT(refusal_of({}, "joints.hinge.type"),
@@ -266,7 +269,16 @@ TEST(Outcomes, AreRefusedByNameIfTheyAreNoPositionsOrVelocities) {
   EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "joints.hinge.force.x@end"),
               HasSubstr("unknown joint 'hinge.force'"));
   EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rod.acceleration.z@end"),
-              HasSubstr("the outcome: 'bodies.rod.acceleration.z' is not a position or velocity"));
+              HasSubstr("the outcome: 'bodies.rod.acceleration.z' is not a position or velocity. "
+                        "Name bodies.NAME.position.x"));
+  EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rod.positon.z@end"),
+              HasSubstr("'bodies.rod.positon.z' is not a position or velocity. Did you mean "
+                        "'bodies.rod.position.z'?"));
+  EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "body.rdo.position.z@end"),
+              HasSubstr("'body.rdo.position.z' is not a position or velocity. Did you mean "
+                        "'bodies.rdo.position.z'?"));
+  EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rdo.position.z@end"),
+              HasSubstr("unknown body 'rdo'. Did you mean 'rod'?"));
   EXPECT_THAT(refusal_of({.loads = "", .shape = "}\n  wall: {fixed: true"}, "bodies.rod.mass",
                          "bodies.wall.position.x"),
               HasSubstr("is of a fixed body, which depends on nothing. Name a moving body"));

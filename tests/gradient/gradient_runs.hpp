@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/io/read/gradient_parameter.hpp>
@@ -20,13 +23,15 @@ struct GradientCase {
   std::vector<std::string> parameters;
   std::vector<std::string> outcomes;
   int order = 2;
+  double rho_inf = 1.0;
 
   [[nodiscard]] io::ModelText source() const {
     return {text,
             "model.yaml",
             "model.yaml",
             {"analysis.step=" + std::to_string(step), "analysis.order=" + std::to_string(order),
-             "analysis.duration=" + std::to_string(step * steps)}};
+             "analysis.duration=" + std::to_string(step * steps),
+             "analysis.rho_inf=" + std::to_string(rho_inf)}};
   }
   [[nodiscard]] Model model() const {
     const io::ModelText s = source();
@@ -60,6 +65,30 @@ inline double difference_of_runs(const GradientParameter& parameter, const std::
            value_at_end(parameter.at(parameter.value - k * d), channel);
   };
   return (45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * d);
+}
+
+/// Relative differences of a gradient from sixth-order differences of runs; parameters whose effect
+/// is below a thousandth of the largest are compared with that.
+/// @param check  Largest difference of tangent and adjoint that is allowed [-].
+inline double difference_from_runs(const GradientCase& c, double part = 3e-3,
+                                   double check = 1e-11) {
+  const GradientRequest request = c.request();
+  const OutcomeGradient g = differentiate(c.model(), request).outcomes.front();
+  EXPECT_LT(g.spot_check, check);
+  std::vector<double> of_runs;
+  double largest = 0.0;
+  const auto size = [&](std::size_t j) { return std::abs(request.parameters[j].value); };
+  for (std::size_t j = 0; j < g.by.size(); ++j) {
+    of_runs.push_back(
+        difference_of_runs(request.parameters[j], request.outcomes.front().channel, part));
+    largest = std::max(largest, std::abs(of_runs[j]) * size(j));
+  }
+  double most = 0.0;
+  for (std::size_t j = 0; j < g.by.size(); ++j) {
+    const double scale = std::max(std::abs(of_runs[j]), 1e-3 * largest / size(j));
+    most = std::max(most, std::abs(g.by[j] - of_runs[j]) / scale);
+  }
+  return most;
 }
 
 }  // namespace polhode::test

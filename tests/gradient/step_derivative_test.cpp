@@ -117,6 +117,63 @@ TEST(StepDerivative, ReportsAMatrixThatCannotBeFactored) {
   }
 }
 
+/// @tests{damped-step-derivative}
+TEST(WrenchDerivative, IsThatOfTheStepSeenBackwardsWhereLawsAreSymmetric) {
+  const Step s;
+  const System& system = s.simulation.system();
+  const Trial step = StepDerivative(system).trial(s.from, s.to, s.to.dt_last);
+  WrenchDerivative wrenches(system);
+  std::vector<BodyStep> steps;
+  for (int b = 0; b < 2; ++b) steps.push_back(body_step(system, s.from, step, b));
+  steps.push_back(BodyStep::ground(0.5));
+  wrenches.evaluate(s.from, step, steps, step.scale(system));
+  NewtonSystem backward(system, MomentumRate::momentum);
+  const Trial back = reversed(system, step, s.to);
+  backward.assemble(s.to, back, true);
+  for (std::size_t b = 0; b < 2; ++b) {
+    const BodyData& body = system.bodies()[b];
+    const int at = static_cast<int>(b);
+    const MomentumRates m =
+        momentum_rates(body.mass, body.inertia, system.motion(s.to, at),
+                       body_step(system, s.to, back, at), back.context, MomentumRate::momentum);
+    Mat6 expected = backward.values().diagonal[b];
+    expected.topLeftCorner<3, 3>().diagonal().array() -= step.scale(system) * m.K_r;
+    expected.bottomRightCorner<3, 3>() -= step.scale(system) * m.K_theta;
+    const Mat6 K = wrenches.by_place().diagonal[b] - wrenches.by_velocity().diagonal[b];
+    EXPECT_LT((K - expected).norm(), 1e-10 * expected.norm()) << b;
+    EXPECT_GT(wrenches.by_velocity().diagonal[b].norm(), b == 1 ? 1e-3 * expected.norm() : -1.0);
+  }
+}
+
+/// @tests{damped-step-derivative}
+TEST(StepDerivative, OfADampedStepPulledBackIsTheTransposeOfThePush) {
+  for (const double rho : {0.0, 0.7}) {
+    Model model = io::read_model_text(kLinkage, "model.yaml");
+    model.analysis.rho_inf = rho;
+    Simulation simulation(model);
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(simulation.step(1.0).accepted);
+    const State before = simulation.state();
+    EXPECT_TRUE(simulation.step(1.0).accepted);
+    const State& to = simulation.state();
+    StepDerivative derivative(simulation.system(), rho);
+    const State& from = derivative.beginning(before, to.dt_last);
+    derivative.linearize(from, to, derivative.trial(from, to, to.dt_last));
+    EXPECT_EQ(derivative.state_size(), 30 * 2);
+    EXPECT_LT(derivative.jump(), 1e-9);
+    Vec dy(derivative.state_size()), mu(derivative.state_size()), R(derivative.inputs());
+    for (Eigen::Index i = 0; i < dy.size(); ++i) {
+      dy[i] = std::cos(1.0 + 2.4 * static_cast<double>(i));
+      mu[i] = std::sin(2.0 + 1.7 * static_cast<double>(i));
+    }
+    for (Eigen::Index i = 0; i < R.size(); ++i) R[i] = std::cos(0.3 + 1.1 * static_cast<double>(i));
+    Vec forward = dy, backward = mu;
+    derivative.push(R, forward);
+    const Vec eta = derivative.pull(backward);
+    const double a = mu.dot(forward), b = backward.dot(dy) + eta.dot(R);
+    EXPECT_NEAR(a, b, 1e-11 * forward.norm() * mu.norm());
+  }
+}
+
 /// @tests{step-adjoint}
 TEST(StepDerivative, PulledBackIsTheTransposeOfThePush) {
   const Step s;

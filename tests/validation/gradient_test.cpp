@@ -14,28 +14,6 @@
 namespace polhode::test::gradient_tests {
 namespace {
 
-/// Relative differences of a gradient from sixth-order differences of runs; parameters whose effect
-/// is below a thousandth of the largest are compared with that.
-double difference_from_runs(const GradientCase& c, double part = 3e-3) {
-  const GradientRequest request = c.request();
-  const OutcomeGradient g = differentiate(c.model(), request).outcomes.front();
-  EXPECT_LT(g.spot_check, 1e-11);
-  std::vector<double> of_runs;
-  double largest = 0.0;
-  const auto size = [&](std::size_t j) { return std::abs(request.parameters[j].value); };
-  for (std::size_t j = 0; j < g.by.size(); ++j) {
-    of_runs.push_back(
-        difference_of_runs(request.parameters[j], request.outcomes.front().channel, part));
-    largest = std::max(largest, std::abs(of_runs[j]) * size(j));
-  }
-  double most = 0.0;
-  for (std::size_t j = 0; j < g.by.size(); ++j) {
-    const double scale = std::max(std::abs(of_runs[j]), 1e-3 * largest / size(j));
-    most = std::max(most, std::abs(g.by[j] - of_runs[j]) / scale);
-  }
-  return most;
-}
-
 constexpr const char* kDoublePendulum = R"yaml(
 format: 1
 gravity: [0, 0, -9.81]

@@ -44,10 +44,6 @@ void check_settings(const AnalysisSpec& a, bool extrapolated) {
     refuse_gradient("analysis.step",
                     "is automatic: the lengths of the steps would depend on the parameters",
                     "Give a fixed step for a gradient");
-  if (a.rho_inf != 1.0)
-    refuse_gradient("analysis.rho_inf",
-                    format("is {:g}, but gradients exist for rho_inf: 1 only", a.rho_inf),
-                    "Use rho_inf: 1");
   if (extrapolated)
     refuse_gradient("analysis.method", "is extrapolation, which has no gradient yet",
                     "Use order: 2, or a composition of order 4, 6 or 8");

@@ -50,6 +50,12 @@ std::vector<std::string> gradient_doubts(const RunGradient& run, std::size_t out
                "exact for this run, and no property of the motion. Take a shorter step or a "
                "shorter run",
                g.outcome, wide, 100.0 * kWide));
+  if (run.defect > kDigits)
+    doubts.push_back(
+        format("the gradient of '{}' has about {:.0f} digits: where rho_inf is below 1, forces of "
+               "redundant joints, which are not unique, move the bodies a little. Use rho_inf: 1, "
+               "or joints without redundant rows",
+               g.outcome, std::max(1.0, std::floor(-std::log10(run.defect)))));
   const double rounding =
       g.growth * std::numeric_limits<double>::epsilon() * static_cast<double>(run.steps);
   if (rounding > kDigits || g.spot_check > kDigits)

@@ -5,6 +5,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/gradient/outcome.hpp>
 #include <polhode/gradient/step_derivative.hpp>
 #include <polhode/math/quaternion.hpp>
@@ -22,12 +23,33 @@ int component_of(const std::string& name) {
   return name.size() == 1 && name[0] >= 'x' && name[0] <= 'z' ? name[0] - 'x' : -1;
 }
 
+/// The channel with its list and its quantity replaced by the closest there are.
+std::string nearest_channel(const std::string& channel) {
+  std::string near = channel;
+  const auto mend = [&near](std::size_t from, std::size_t to,
+                            const std::vector<std::string>& known) {
+    if (const std::string word = closest(near.substr(from, to - from), known); !word.empty())
+      near.replace(from, to - from, word);
+  };
+  const std::size_t last = near.rfind('.');
+  if (last == std::string::npos) return {};
+  const std::size_t before = near.rfind('.', last - 1);
+  const std::size_t first = near.find('.');
+  if (before != std::string::npos && before > first)
+    mend(before + 1, last, {"position", "velocity", "angular_velocity", "coordinates"});
+  mend(0, first, {"bodies", "probes", "joints"});
+  return near == channel ? std::string() : near;
+}
+
 [[noreturn]] void refuse_channel(const std::string& channel) {
+  const std::string near = nearest_channel(channel);
   throw InputError(
       "the outcome", format("'{}' is not a position or velocity", channel),
-      "Name bodies.NAME.position.x, bodies.NAME.velocity.x, bodies.NAME.angular_velocity.x, "
-      "probes.NAME.x, probes.NAME.vx or joints.NAME.COORDINATE; forces and accelerations have no "
-      "gradient yet");
+      (near.empty() ? std::string() : format("Did you mean '{}'? ", near)) +
+          "Name bodies.NAME.position.x, bodies.NAME.velocity.x, bodies.NAME.angular_velocity.x, "
+          "probes.NAME.x, probes.NAME.vx or joints.NAME.COORDINATE; forces and accelerations have "
+          "no "
+          "gradient yet");
 }
 
 }  // namespace

@@ -65,7 +65,8 @@ ParameterShift::ParameterShift(const GradientParameter& parameter, const Simulat
       path_(parameter.path),
       step_(parameter.step > 0.0     ? parameter.step
             : parameter.value != 0.0 ? kParameterStep * std::abs(parameter.value)
-                                     : kStepFromZero) {
+                                     : kStepFromZero),
+      stores_(base.model().analysis.rho_inf < 1.0) {
   if (path_.starts_with("analysis."))
     throw InputError(path_, "is a setting of the run, by which there is no derivative",
                      "Name a number of the mechanism");
@@ -140,6 +141,10 @@ void ParameterShift::set_items(const System& system, const ChangedItems& changed
       places_.push_back(6 * system.body_count() + ref.first_row + k);
     }
   }
+  first_stored_ = places_.size();
+  for (const int b : bodies_)
+    for (int i = 0; stores_ && i < 3; ++i)
+      places_.push_back(6 * system.body_count() + system.rows() + 3 * b + i);
   for (Neighbour& n : at_) {
     n.sweep = std::make_unique<InteractionSweep>(n.simulation->system(), interactions_);
     n.residual.assign(places_.size(), 0.0);
@@ -155,7 +160,10 @@ auto ParameterShift::difference(const Value& of) const {
 
 Vec ParameterShift::start_derivative(const System& system, const State& start) const {
   return difference([&](const Neighbour& n) -> Vec {
-    Vec y = Vec::Zero(kStateNumbers * system.body_count());
+    Vec y = Vec::Zero(state_size(system, stores_ ? 0.0 : 1.0));
+    if (stores_)
+      put_stored(n.simulation->system(), n.simulation->state(),
+                 y.tail(2 * kStoredNumbers * system.body_count()));
     for (int b = 0; b < system.body_count(); ++b) {
       const BodyMotion m = system.motion(start, b);
       const BodyMotion at = n.simulation->system().motion(n.simulation->state(), b);
@@ -214,12 +222,16 @@ void ParameterShift::evaluate(Neighbour& n, const State& from, const Trial& step
   const auto of = [&](int body) {
     return Eigen::Map<Vec6>(n.residual.data() + of_body_[static_cast<std::size_t>(body)]);
   };
+  double* stored = n.residual.data() + first_stored_;
   for (const int b : bodies_) {
     const BodyData& body = system.bodies()[static_cast<std::size_t>(b)];
-    const MomentumRates m =
-        momentum_rates(body.mass, body.inertia, system.motion(from, b),
-                       steps[static_cast<std::size_t>(b)], step.context, MomentumRate::momentum);
+    const BodyStep& x = steps[static_cast<std::size_t>(b)];
+    const MomentumRates m = momentum_rates(body.mass, body.inertia, system.motion(from, b), x,
+                                           step.context, MomentumRate::momentum);
     of(b) << m.p_dot - body.mass * system.gravity(), m.h_dot;
+    if (!stores_) continue;
+    Vec3::Map(stored) = end_motion(body.inertia, system.motion(from, b), x, step.context).h_dot;
+    stored += 3;
   }
   n.sweep->run(steps, step.context, step.lambda.data(), n.history.data(),
                [&](int i, const PairStep&, const PairTerms& t) {

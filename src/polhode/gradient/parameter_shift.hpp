@@ -34,8 +34,8 @@ class ParameterShift {
   [[nodiscard]] Vec start_derivative(const System& system, const State& start) const;
   /// Memory at the start of the run that is differentiated.
   void begin(const State& start);
-  /// Derivative of the residual of a step by the parameter at fixed motion, six numbers for each
-  /// body, then the rows: added to the entries of this column.
+  /// Derivative of the inputs of a step, see StepDerivative::inputs(), by the parameter at fixed
+  /// motion: added to the entries of this column.
   /// @param steps  Of the bodies, the ground last. @param step  Without tangents.
   void add_residual(const State& from, const Trial& step, std::span<const BodyStep> steps,
                     int column, std::vector<Eigen::Triplet<double>>& entries);
@@ -65,9 +65,11 @@ class ParameterShift {
   double step_ = 0.0;
   bool checked_ = false;
   std::vector<int> bodies_, interactions_;  ///< That may differ.
-  /// Residuals that may differ: their places among bodies, six each, and rows, and by body and row
-  /// the number among these, or −1.
+  /// Residuals that may differ: their places among the inputs of a step, and by body and row the
+  /// number among these, or −1.
   std::vector<int> places_, of_body_, of_row_;
+  std::size_t first_stored_ = 0;  ///< Of these the first ḣ of bodies_, if accelerations are stored.
+  bool stores_ = false;
   std::array<Neighbour, 4> at_;  ///< At +1, −1, +2, −2 steps.
 };
 

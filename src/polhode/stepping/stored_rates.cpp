@@ -6,9 +6,6 @@ namespace polhode {
 
 namespace {
 
-/// Weight of the last step in the updated rate.
-constexpr double kFresh = 0.25;
-
 /// Calls visit(number in the state, stored number, its rate) for every number of a, A and ḣ.
 template <class Visit>
 void for_each_number(State& state, const Visit& visit) {
@@ -58,7 +55,7 @@ void restore_stored_rates(State& state) {
 void renew_stored_rates(State& state, const GeneralizedAlpha& ga, double dt) {
   const double later = ga.delta * (dt - state.rates_dt);
   for_each_number(state, [&](double& x, double& kept, double& rate) {
-    rate += kFresh * ((x - (kept + later * rate)) / dt - rate);
+    rate += kFreshRate * ((x - (kept + later * rate)) / dt - rate);
     kept = x;
   });
   state.rates_dt = dt;

@@ -11,6 +11,9 @@ namespace polhode {
 // where the step changes all the time (measured: 1.0 to 1.3 at any ρ∞ < 1). At ρ∞ = 1, where they
 // are not used, State::rates is empty and these functions do nothing. @eq{stored-rates}
 
+/// Weight of the last step in an updated rate.
+inline constexpr double kFreshRate = 0.25;
+
 /// Allocates the rates; they are those given with set_stored_rate(), else zero.
 /// @param dt  Step for which the state's a, A, ḣ hold [s]; 0 if they are those of t_n itself.
 void begin_stored_rates(State& state, const GeneralizedAlpha& ga, double dt);

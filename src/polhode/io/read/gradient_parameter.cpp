@@ -4,6 +4,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/io/read/gradient_parameter.hpp>
 #include <polhode/io/read/read_context.hpp>
 
@@ -11,10 +12,46 @@ namespace polhode::io {
 
 namespace {
 
-const SourceNode* node_at(const SourceNode& root, const std::string& path) {
+std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;
   std::stringstream stream(path);
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
+  return parts;
+}
+
+/// The path with its unknown keys replaced by the closest ones, or "" if there is none for one.
+std::string nearest_path(const SourceNode& root, const std::string& path) {
+  const std::vector<std::string> parts = parts_of(path);
+  const auto names_of = [](const SourceNode& node) {
+    std::vector<std::string> names;
+    for (const SourceNode::Key& key : node.keys) names.push_back(key.name);
+    return names;
+  };
+  if (parts.size() == 1) {
+    const SourceNode* variables = root.find("variables");
+    return variables ? closest(path, names_of(*variables)) : std::string();
+  }
+  const SourceNode* node = &root;
+  std::string near;
+  for (std::string part : parts) {
+    if (node->is_map()) {
+      if (!node->find(part)) part = closest(part, names_of(*node));
+      node = node->find(part);
+    } else if (node->is_list()) {
+      const bool counts = part.size() == 1 && part[0] >= '0' && part[0] <= '9';
+      const std::size_t index = counts ? static_cast<std::size_t>(part[0] - '0') : std::size_t{10};
+      node = index < node->children.size() ? &node->children[index] : nullptr;
+    } else {
+      node = nullptr;
+    }
+    if (!node) return {};
+    near += (near.empty() ? "" : ".") + part;
+  }
+  return near;
+}
+
+const SourceNode* node_at(const SourceNode& root, const std::string& path) {
+  const std::vector<std::string> parts = parts_of(path);
   const SourceNode* variables = root.find("variables");
   if (parts.size() == 1 && variables && variables->find(parts[0])) return variables->find(parts[0]);
   const SourceNode* node = &root;
@@ -50,10 +87,14 @@ GradientParameter gradient_parameter(const ModelText& source, const std::string&
   if (const SourceNode* node = tree.root().find("variables")) read_variables(context, *node);
   diagnostics.throw_if_any();
   const SourceNode* node = node_at(tree.root(), path);
-  if (!node)
-    throw InputError(path, "is not in the model",
-                     "Name a variable, or keys and list indices joined by dots, of a number that "
-                     "the file gives");
+  if (!node) {
+    const std::string near = nearest_path(tree.root(), path);
+    throw InputError(
+        path, "is not in the model",
+        (near.empty() ? std::string() : format("Did you mean '{}'? ", near)) +
+            "Name a variable, or keys and list indices joined by dots, of a number that "
+            "the file gives");
+  }
   if (!node->is_text())
     throw InputError(path, format("is {}, no number", node->description()),
                      "Name one of its numbers, such as its first one by .0");
