@@ -18,6 +18,8 @@ from ._run import whole_run
 
 #: Value of a design that does not run, in units of the largest cost seen; its slope is zero.
 _WORSE = 10.0
+#: Size of a parameter, in units of its guess, beyond which designs are not run: a search that gets there has no end.
+_FARTHEST = 1e4
 
 Cost = Callable[[Any, Any], "tuple[float, Any, Any]"]
 
@@ -116,6 +118,7 @@ def minimize(
 
     By SciPy's L-BFGS-B, with limits by SLSQP, which meets them and bounds exactly; one adjoint for each outcome, or
     tangents if there are more outcomes than parameters. A design that does not run counts as worse than all that do.
+    A search that leaves for ten thousand sizes of a parameter ends unconverged: the message asks for bounds of it.
     Raises ModelError or NotConverged if the model does not run at the guesses or has no gradient, ValueError for a
     list without `cost`.
     """
@@ -138,6 +141,7 @@ def minimize(
     watched = list(limits or {})
     runs = _Evaluations(model, overrides, outcomes + watched, names, scale)
     n, worst = len(outcomes), [0.0]
+    left: "list[str]" = []
 
     def value(x: Any) -> "tuple[float, Any]":
         values, slopes = runs.at(x)
@@ -149,6 +153,9 @@ def minimize(
         return float(number), slope
 
     def safely(x: Any) -> "tuple[float, Any]":
+        if np.abs(x).max() > _FARTHEST:
+            left.append(names[int(np.argmax(np.abs(x)))])
+            return _WORSE * (worst[0] or 1.0), np.zeros(len(names))
         try:
             return value(x)
         except (ModelError, NotConverged):
@@ -178,7 +185,11 @@ def minimize(
         if not least_value - slack <= v <= most_value + slack:
             broken.append(k)
     message = f"the limit of '{broken[0]}' cannot be met here" if broken else str(found.message)
+    converged = bool(found.success) and not broken
+    if left and not converged and not broken:
+        message = (f"the cost falls on and on: the search left for '{left[0]}' beyond {_FARTHEST:g} times its guess. "
+                   f"Give bounds={{'{left[0]}': (lowest, highest)}}, or a cost that grows with it")
     result = whole_run(model, runs.with_parameters(x))
     return Minimum(dict(zip(names, (x * scale).tolist())), number, dict(zip(outcomes + watched, values.tolist())),
-                   dict(zip(names, (slope / scale).tolist())), result, bool(found.success) and not broken, message,
-                   runs.count)
+                   dict(zip(names, (slope / scale).tolist())), result,
+                   converged, message, runs.count)

@@ -324,6 +324,19 @@ def test_designs_that_cannot_be_assembled_are_passed_over() -> None:
     assert found.value == pytest.approx(0, abs=1e-10)
 
 
+@pytest.mark.parametrize("step", STEPS)
+def test_a_minimum_that_is_nowhere_asks_for_bounds(step: str) -> None:
+    # z(T) = z_0 + v T - g T^2 / 2 falls with the initial speed, without end.
+    m = throw(step)
+    speed, height = "bodies.ball.velocity.2", "bodies.ball.position.z@end"
+    found = polhode.minimize(m, height, {speed: 4.0})
+    assert not found.converged
+    assert f"the search left for '{speed}' beyond 10000 times its guess. Give bounds={{'{speed}': (" in found.message
+    bounded = polhode.minimize(m, height, {speed: 4.0}, bounds={speed: (-6, 6)})
+    assert bounded.converged and bounded.parameters[speed] == -6
+    assert bounded.value == pytest.approx(1 - 6 * 0.5 - 9.81 * 0.125, abs=1e-9)
+
+
 def test_what_minimize_does_not_take_is_said() -> None:
     with pytest.raises(ValueError, match="several outcomes require `cost`"):
         polhode.minimize(throw(), ["bodies.ball.position.z@end", "bodies.ball.position.x@end"], {"gravity.2": -9.0})

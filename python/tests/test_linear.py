@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Linearisation and inverse dynamics against closed forms."""
 
+from typing import Callable
+
 import numpy as np
 import pytest
 
@@ -33,10 +35,10 @@ def test_a_cart_pole_has_the_matrices_of_the_textbook() -> None:
     A[:2, 2:] = np.eye(2)
     A[2:, :2] = np.linalg.solve(M, [[0.0, 0.0], [0.0, POLE * G * HALF]])
     B[2:] = np.linalg.inv(M)
-    assert s.A == pytest.approx(A, abs=1e-6 * np.abs(A).max())
-    assert s.B == pytest.approx(B, abs=1e-6 * np.abs(B).max())
-    assert s.C == pytest.approx(np.array([[0, 1, 0, 0], [0, 0, 1, HALF]]), abs=1e-8)
-    assert s.D == pytest.approx(np.zeros((2, 2)), abs=1e-9)
+    assert s.A == pytest.approx(A, abs=1e-11 * np.abs(A).max())
+    assert s.B == pytest.approx(B, abs=1e-11 * np.abs(B).max())
+    assert s.C == pytest.approx(np.array([[0, 1, 0, 0], [0, 0, 1, HALF]]), abs=1e-12)
+    assert s.D == pytest.approx(np.zeros((2, 2)), abs=1e-12)
     assert s.outputs == ["joints.hinge.coordinates.0", "bodies.pole.velocity.x"] and s.inputs[0] == "push.x"
 
 
@@ -58,8 +60,59 @@ def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiff
     m.add_joint("axle", "revolute", ["ground", "shaft"], at=[0, 0, 0], axis="z")
     m.add_joint("pin", "revolute", ["shaft", "bob"], at=[0, 0, 0], axis="y")
     A = polhode.linearize(m).A
-    assert A[3, 1] == pytest.approx(-(W**2) * s**2, rel=1e-5)
-    assert np.abs(A[2:, 0]).max() < 1e-4 * W**2  # the shaft's angle
+    inertia = 1 + 1e-12 / 1e-3  # the bob's own, as a part of m l^2
+    assert A[3, 1] == pytest.approx(-(W**2) * s**2 / inertia, rel=1e-11)
+    assert A[3, 2] == pytest.approx(2 * W * s * c / inertia, rel=1e-10) or A[3, 2] == pytest.approx(
+        -2 * W * s * c / inertia, rel=1e-10)
+    assert np.abs(A[2:, 0]).max() < 1e-10 * W**2  # the shaft's angle
+
+
+def hanging_pendulum(m: polhode.Model) -> float:
+    """A pendulum; returns the square of its frequency."""
+    m.add_body("arm", mass=2, inertia=[0.2, 0.3, 0.2], position=[0, 0, -0.7])
+    m.add_joint("hinge", "revolute", ["ground", "arm"], at=[0, 0, 0], axis="y")
+    return 2 * G * 0.7 / (0.3 + 2 * 0.7**2)
+
+
+def hanging_four_bar(m: polhode.Model) -> float:
+    """A parallelogram of two cranks and a coupler that hang, with redundant rows; the square of its frequency."""
+    length = 0.8
+    for name, x in (("left", 0.0), ("right", 1.0)):
+        m.add_body(name, mass=1.5, inertia=[0.05] * 3, position=[x, 0, -length / 2])
+        m.add_joint(f"top_{name}", "revolute", ["ground", name], at=[x, 0, 0], axis="y")
+    m.add_body("coupler", mass=3, inertia=[0.2] * 3, position=[0.4, 0, -length])
+    m.add_joint("foot_left", "revolute", ["left", "coupler"], at=[0, 0, -length], axis="y")
+    m.add_joint("foot_right", "revolute", ["coupler", "right"], at=[1, 0, -length], axis="y")
+    stiffness = G * (2 * 1.5 * length / 2 + 3 * length)
+    return stiffness / (2 * (0.05 + 1.5 * length**2 / 4) + 3 * length**2)
+
+
+@pytest.mark.parametrize("build", [hanging_pendulum, hanging_four_bar])
+def test_small_swings_have_the_frequency_of_the_closed_form(build: "Callable[[polhode.Model], float]") -> None:
+    m = polhode.Model(gravity=[0, 0, -G], analysis={"duration": 1, "step": 0.001})
+    square = build(m)
+    values = np.linalg.eigvals(polhode.linearize(m).A)
+    assert np.abs(values.real).max() < 1e-10 * np.sqrt(square)
+    assert values.imag.max() == pytest.approx(np.sqrt(square), rel=1e-11)
+    (mode,) = polhode.modes(m, about="start")
+    assert mode.frequency == pytest.approx(np.sqrt(square) / (2 * np.pi), rel=1e-11)
+
+
+@pytest.mark.parametrize("spin", [1.0, 100.0, 3000.0])
+def test_a_spinning_disc_in_gimbals_has_the_nutation_of_the_closed_form(spin: float) -> None:
+    # (A + I_x) a'' + C w b' = 0, (A + I_y) b'' - C w a' = 0: free but for lambda^2 = -(C w)^2 / ((A + I_x) (A + I_y)).
+    polar, across, outer, inner = 0.4, 0.25, 0.03, 0.02
+    m = polhode.Model(gravity=[0, 0, 0], analysis={"duration": 1, "step": 0.001})
+    m.add_body("outer", mass=1, inertia=[outer] * 3)
+    m.add_body("inner", mass=1, inertia=[inner] * 3)
+    m.add_body("disc", mass=2, inertia=[across, across, polar], angular_velocity=[0, 0, spin])
+    m.add_joint("a", "revolute", ["ground", "outer"], at=[0, 0, 0], axis="x")
+    m.add_joint("b", "revolute", ["outer", "inner"], at=[0, 0, 0], axis="y")
+    m.add_joint("c", "revolute", ["inner", "disc"], at=[0, 0, 0], axis="z")
+    values = np.linalg.eigvals(polhode.linearize(m).A)
+    nutation = polar * spin / np.sqrt((across + inner + outer) * (across + inner))
+    assert values.imag.max() == pytest.approx(nutation, rel=1e-10)
+    assert np.sort(np.abs(values))[:4] == pytest.approx(np.zeros(4), abs=1e-4 * spin)  # square roots of rounding
 
 
 def test_python_control_takes_the_matrices() -> None:

@@ -111,6 +111,9 @@ def test_the_sweep_command_draws_curves_and_maps(tmp_path: pathlib.Path, capsys:
     capsys.readouterr()
     for wrong, message in ((["--vary", "k=2,3", "--output", "max(bodies.b)"], "is a group"),
                            (["--vary", "k=2,3"], "--plot requires --output"),
+                           (["--vary", "k=2,3", "--gradient", "bodies.b.positon.z"], "'bodies.b.position.z'?"),
+                           (["--vary", "k=2,3", "--gradient", "bodies.c.position.z@0.5"], "unknown body 'c'"),
+                           (["--vary", "k=2,3", "--gradient", "bodies.b.position.z@last"], "unknown time 'last'"),
                            (["--vary", "k=2,3", "--vary", "c=1,2", "--vary", "m=1,2"], "and 3 vary")):
         assert command(*wrong) == 2 and message in capsys.readouterr().err
 

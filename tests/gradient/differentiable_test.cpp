@@ -132,6 +132,15 @@ TEST(RequireDifferentiable, RefusesAForceThatIsNotSymmetricInTime) {
               HasSubstr("bodies.rod: feels a force at t = 0.06 s that is not symmetric in time"));
 }
 
+TEST(RequireDifferentiable, RefusesBreaksOfFunctionsInDampedRuns) {
+  const std::string push =
+      "  push: {type: moment, body: rod, moment: [0, 't > 0.045 ? 1 : 0', 0]}\n";
+  EXPECT_EQ(refusal_of({.loads = push}), "nothing");
+  EXPECT_THAT(refusal_of({.loads = push, .analysis = "step: 10 ms, rho_inf: 0.8"}),
+              HasSubstr("analysis.rho_inf: is 0.8, and at t = 0.045 s a function has a break: "
+                        "accelerations begin anew there"));
+}
+
 TEST(RequireDifferentiable, RefusesARunWhoseStatesNeedTooMuchMemory) {
   EXPECT_THAT(refusal([] {
                 Model model = io::read_model_text(text_of({}), "model.yaml");
@@ -175,8 +184,8 @@ TEST(GradientParameters, AreRefusedByNameIfTheyAreNoNumbers) {
   EXPECT_THAT(refusal_of({}, "bodies.rod.weight"),
               HasSubstr("bodies.rod.weight: is not in the model. Name a variable"));
   EXPECT_THAT(
-      refusal_of({}, "body.rdo.mas"),
-      HasSubstr("body.rdo.mas: is not in the model. Did you mean 'bodies.rod.mass'? Name a"));
+      refusal_of({}, "bodes.rdo.mas"),
+      HasSubstr("bodes.rdo.mas: is not in the model. Did you mean 'bodies.rod.mass'? Name a"));
   EXPECT_THAT(refusal_of({.more = "variables: {speed: 2}\n"}, "spede"),
               HasSubstr("spede: is not in the model. Did you mean 'speed'?"));
   EXPECT_THAT(refusal_of({}, "bodies.rod.position"),
@@ -274,8 +283,8 @@ TEST(Outcomes, AreRefusedByNameIfTheyAreNoPositionsOrVelocities) {
   EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rod.positon.z@end"),
               HasSubstr("'bodies.rod.positon.z' is not a position or velocity. Did you mean "
                         "'bodies.rod.position.z'?"));
-  EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "body.rdo.position.z@end"),
-              HasSubstr("'body.rdo.position.z' is not a position or velocity. Did you mean "
+  EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodes.rdo.position.z@end"),
+              HasSubstr("'bodes.rdo.position.z' is not a position or velocity. Did you mean "
                         "'bodies.rdo.position.z'?"));
   EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rdo.position.z@end"),
               HasSubstr("unknown body 'rdo'. Did you mean 'rod'?"));

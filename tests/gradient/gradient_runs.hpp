@@ -24,13 +24,14 @@ struct GradientCase {
   std::vector<std::string> outcomes;
   int order = 2;
   double rho_inf = 1.0;
+  double rest = 0.0;  ///< Length of a last, shorter step.
 
   [[nodiscard]] io::ModelText source() const {
     return {text,
             "model.yaml",
             "model.yaml",
             {"analysis.step=" + std::to_string(step), "analysis.order=" + std::to_string(order),
-             "analysis.duration=" + std::to_string(step * steps),
+             "analysis.duration=" + std::to_string(step * steps + rest),
              "analysis.rho_inf=" + std::to_string(rho_inf)}};
   }
   [[nodiscard]] Model model() const {

@@ -78,25 +78,26 @@ loads:
 }
 
 /// @tests{damped-step-derivative}
-TEST(DampedGradient, OfStepsThatABreakShortensIsExact) {
-  // A step ends at 45 ms: stored accelerations are adapted to the lengths before and after it.
-  const GradientCase c{R"yaml(
+TEST(DampedGradient, OfAShorterLastStepIsExact) {
+  // Stored accelerations are adapted to its length.
+  GradientCase c{R"yaml(
 format: 1
 gravity: [0, 0, -9.81]
 variables: {push: 3}
 bodies:
-  rod: {mass: 1, inertia: [1e-2, 2e-2, 1e-2], position: [0.5, 0, 0], angular_velocity: [0, 1, 0]}
+  rod: {mass: 1, inertia: [1.5e-2, 2e-2, 1.2e-2], position: [0.5, 0, 0], angular_velocity: [0, 1, 0]}
 joints:
   hinge: {type: revolute, bodies: [ground, rod], at: [0, 0, 0], axis: y}
 loads:
-  push: {type: moment, body: rod, moment: [0, 't > 0.045 ? push : 0', 0]}
+  push: {type: moment, body: rod, moment: [0, push*sin(3*t), 0]}
   damper: {type: torsional_spring, joint: hinge, damping: 0.3}
 analysis: {duration: 1 s, step: 10 ms}
 )yaml",
-                       0.01,
-                       20,
-                       {"push", "bodies.rod.mass", "bodies.rod.inertia.1", "loads.damper.damping"},
-                       {"bodies.rod.velocity.z@end"}};
+                 0.01,
+                 20,
+                 {"push", "bodies.rod.mass", "bodies.rod.inertia.1", "loads.damper.damping"},
+                 {"bodies.rod.velocity.z@end"}};
+  c.rest = 0.004;
   EXPECT_EQ(differentiate(c.model(), c.request()).steps, 21);
   for (const double rho : kRadii) EXPECT_LT(difference(c, rho), 1e-9) << rho;
 }
@@ -210,12 +211,9 @@ TEST(DampedGradient, OfRedundantLoopsHasFewerDigitsAndSaysSo) {
                    {"bodies.rod_3.position.x@end"}};
     c.rho_inf = 0.8;
     EXPECT_LT(difference_from_runs(c, 3e-3, 1e-6), 3e-5) << step;
-    if (step < 0.01) continue;
     const GradientRequest request = c.request();
-    EXPECT_THAT(
-        gradient_doubts(differentiate(c.model(), request), 0, request, {}),
-        testing::Contains(testing::HasSubstr("where rho_inf is below 1, forces of redundant "
-                                             "joints, which are not unique")))
+    EXPECT_THAT(gradient_doubts(differentiate(c.model(), request), 0, request, {}),
+                testing::Contains(testing::HasSubstr("rows, which are not unique")))
         << step;
   }
 }

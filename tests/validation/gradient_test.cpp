@@ -44,7 +44,7 @@ GradientCase double_pendulum(double step, int steps, int order = 2) {
 TEST(RunGradient, OfADoublePendulumIsThatOfDifferencesOfRunsAtAnyStep) {
   EXPECT_LT(difference_from_runs(double_pendulum(0.05, 10)), 1e-9);
   EXPECT_LT(difference_from_runs(double_pendulum(0.01, 50)), 1e-9);
-  EXPECT_LT(difference_from_runs(double_pendulum(1e-4, 500)), 1e-9);
+  EXPECT_LT(difference_from_runs(double_pendulum(1e-4, 500), 3e-3, 5e-11), 1e-9);
 }
 
 TEST(RunGradient, IsExactAtEveryOrderOfComposition) {

@@ -14,6 +14,7 @@
 #include <polhode/gradient/parameter_shift.hpp>
 #include <polhode/gradient/run_tape.hpp>
 #include <polhode/gradient/step_derivative.hpp>
+#include <polhode/newton/rank_report.hpp>
 #include <polhode/simulation/order_choice.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -111,9 +112,6 @@ class Differentiation {
     for (const GradientParameter& parameter : request.parameters)
       shifts_.emplace_back(parameter, simulation, map, request.outcomes);
   }
-
-  /// Largest remainder of a solution, after compute() [-].
-  [[nodiscard]] double defect() const { return derivative_.defect(); }
 
   std::vector<OutcomeGradient> compute() {
     const std::size_t n = shifts_.size();
@@ -363,9 +361,9 @@ RunGradient differentiate(const Model& model, const GradientRequest& request) {
   result.run_seconds = wall_clock() - at;
   at = wall_clock();
   result.steps = static_cast<std::int64_t>(tape.lengths.size());
-  Differentiation differentiation(simulation, tape, map, request);
-  result.outcomes = differentiation.compute();
-  result.defect = differentiation.defect();
+  result.outcomes = Differentiation(simulation, tape, map, request).compute();
+  if (model.analysis.rho_inf < 1.0)
+    result.redundant = rank_report(simulation.system(), tape.states.front()).names;
   result.gradient_seconds = wall_clock() - at;
   return result;
 }

@@ -52,7 +52,8 @@ struct RunGradient {
   std::int64_t steps = 0;  ///< Stages, at orders above 2.
   double step = 0.0;       ///< Length [s].
   int order = 2;
-  double defect = 0.0;  ///< Part of the equations of a step that stays open, by redundant rows [-].
+  /// Joints with redundant rows, "joint 'elbow'", whose forces at ρ∞ < 1 cost digits.
+  std::vector<std::string> redundant;
   double run_seconds = 0.0, gradient_seconds = 0.0;
 };
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/gradient/gradient.hpp>
 
 namespace polhode {
@@ -50,12 +51,12 @@ std::vector<std::string> gradient_doubts(const RunGradient& run, std::size_t out
                "exact for this run, and no property of the motion. Take a shorter step or a "
                "shorter run",
                g.outcome, wide, 100.0 * kWide));
-  if (run.defect > kDigits)
+  if (!run.redundant.empty())
     doubts.push_back(
-        format("the gradient of '{}' has about {:.0f} digits: where rho_inf is below 1, forces of "
-               "redundant joints, which are not unique, move the bodies a little. Use rho_inf: 1, "
-               "or joints without redundant rows",
-               g.outcome, std::max(1.0, std::floor(-std::log10(run.defect)))));
+        format("the gradient of '{}' has about seven digits: where rho_inf is below 1, forces of "
+               "redundant rows, which are not unique, move the bodies a little ({}). Use rho_inf: "
+               "1, or joints without redundant rows",
+               g.outcome, name_list(run.redundant, 4)));
   const double rounding =
       g.growth * std::numeric_limits<double>::epsilon() * static_cast<double>(run.steps);
   if (rounding > kDigits || g.spot_check > kDigits)

@@ -48,6 +48,13 @@ RunTape run_onto_tape(Simulation& simulation) {
     const StepReport report = simulation.step(end);
     if (!report.accepted)
       throw SolveError(report.message, "The run must end before it has a gradient");
+    if (method.ga.delta != 0.0 && simulation.state().rates_dt == 0.0 &&
+        simulation.time() < end * (1.0 - 1e-9))
+      throw InputError("analysis.rho_inf",
+                       format("is {:g}, and at t = {:.6g} s a function has a break: accelerations "
+                              "begin anew there, which has no derivative yet",
+                              method.ga.rho_inf, simulation.time()),
+                       "Use rho_inf: 1, or a smooth function");
     if (report.dt == 0.0) {
       tape.states.back().t = simulation.time();
       continue;

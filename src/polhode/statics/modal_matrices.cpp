@@ -21,8 +21,9 @@ constexpr double kRedundant = 1e-9;
 constexpr int kSearches = 40;
 /// Damping, as a part of the stiffness at frequencies of the model, below which it is rounding.
 constexpr double kNoDamping = 1e-14;
-/// Increment of central differences, for rotations and relative lengths [-].
-constexpr double kDifference = 1e-5;
+/// Increment of central differences of order four, for rotations and relative lengths [-]:
+/// truncation is its fourth power over 30, rounding 1e-16 over it.
+constexpr double kDifference = 1e-3;
 
 double largest(const SaddleMatrix& A, int n) {
   double most = 0.0;
@@ -320,10 +321,12 @@ void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>&
       for (int c = 0; c < 6; ++c) {
         const double h = c < 3 ? kDifference * length : kDifference;
         Vec6 D_a = Vec6::Zero(), D_b = Vec6::Zero();
-        for (const double side : {1.0, -1.0})
+        for (const auto& [place, weight] :
+             {std::pair(1.0, 2.0 / 3.0), std::pair(-1.0, -2.0 / 3.0), std::pair(2.0, -1.0 / 12.0),
+              std::pair(-2.0, 1.0 / 12.0)})
           for (const bool turning : {true, false}) {
-            const auto [on_a, on_b] = wrenches(moved, c, side * h, turning);
-            const double factor = (turning ? side : -side) / (2.0 * h);
+            const auto [on_a, on_b] = wrenches(moved, c, place * h, turning);
+            const double factor = (turning ? weight : -weight) / h;
             D_a -= factor * on_a;
             D_b -= factor * on_b;
           }
