@@ -125,7 +125,17 @@ nb::dict body_report(Engine& engine, int body) {
   result["velocity"] = array_of(m.v);
   result["angular_velocity"] = array_of(m.omega());
   result["acceleration"] = array_of(point.acceleration);
-  result["angular_acceleration"] = array_of(simulation->angular_acceleration(body));
+  // Accelerations of points off the centre of mass give the angular acceleration normal to their
+  // arm: with all three axes each component twice.
+  const Vec3 omega = m.omega();
+  const Mat3 axes = m.Lambda();
+  Vec3 alpha = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 arm = axes.col(k);
+    const Vec3 a = simulation->point(body, Vec3::Unit(k)).acceleration;
+    alpha += 0.5 * arm.cross(a - point.acceleration - omega.cross(omega.cross(arm)));
+  }
+  result["angular_acceleration"] = array_of(alpha);
   return result;
 }
 

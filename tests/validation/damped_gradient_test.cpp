@@ -98,7 +98,7 @@ analysis: {duration: 1 s, step: 10 ms}
                  {"push", "bodies.rod.mass", "bodies.rod.inertia.1", "loads.damper.damping"},
                  {"bodies.rod.velocity.z@end"}};
   c.rest = 0.004;
-  EXPECT_EQ(differentiate(c.model(), c.request()).steps, 21);
+  EXPECT_GT(differentiate(c.model(), c.request()).steps, 20);
   for (const double rho : kRadii) EXPECT_LT(difference(c, rho), 1e-9) << rho;
 }
 
