@@ -178,9 +178,9 @@ def linearize(
     The state may be in motion; cyclic coordinates, such as the angle of a rotor, may then change.
     States are coordinates of joints as far as they determine the configuration, then positions of bodies.
     Loads are evaluated at the time of the state. Derivatives are differences of sixth order of the accelerations, which
-    are solved for to round-off: their errors are 1e-11 of the largest entry, or less. Returns a StateSpace. Raises KeyError for unknown names, ValueError if
-    coordinates and positions do not determine the configuration, as for a free body that rotates, or for solids,
-    ModelError for a faulty model or an unknown input.
+    are solved for to round-off: their errors are 1e-11 of the largest entry, or less. Returns a StateSpace. Raises
+    KeyError for unknown names, ValueError if coordinates and positions do not determine the configuration, as for a
+    free body that rotates, or for solids, ModelError for a faulty model or an unknown input.
     """
     if not isinstance(simulation, Simulation):
         simulation = Simulation(simulation, overrides)
