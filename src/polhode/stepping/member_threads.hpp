@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// How a member of an extrapolated step ended.
+/// End of a member of an extrapolated step.
 struct MemberEnd {
   NewtonReport report;
   bool met_stop = false;  ///< A joint stop was met; the rest of its steps were not taken.

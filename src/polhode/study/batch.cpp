@@ -170,7 +170,7 @@ class BatchWork {
     }
   }
 
-  /// What is read of a run: probes are those of its own model, as their points may vary.
+  /// Objects that are read of a run: probes are those of its own model, as their points may vary.
   [[nodiscard]] std::vector<ProbeSpec> specs_of(const Model& model) const {
     std::vector<ProbeSpec> specs = specs_;
     for (ProbeSpec& spec : specs)

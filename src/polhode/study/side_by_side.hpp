@@ -8,10 +8,10 @@
 
 namespace polhode {
 
-/// Why runs of a model cannot be side by side in one system, a phrase such as "its steps are
-/// automatic"; empty if they can. A step of one run must not depend on another run: no contacts,
-/// stops, friction, events, controllers or automatic steps; and solids, beams and cables have no
-/// gain by it.
+/// Reason why runs of a model cannot be side by side in one system, a phrase such as "its steps
+/// are automatic"; empty if they can. A step of one run must not depend on another run: no
+/// contacts, stops, friction, events, controllers or automatic steps; and solids, beams and cables
+/// have no gain by it.
 [[nodiscard]] std::string why_alone(const Model& model);
 
 /// Whether two models have the same bodies, joints and loads with other numbers, in the same

@@ -150,7 +150,7 @@ TEST(FamiliesOfFibres, AddUp) {
 
 // T. C. Gasser, R. W. Ogden, G. A. Holzapfel, Journal of the Royal Society Interface 3 (2006):
 // two families at ±γ in a wall, with the dispersion κ. The derivative of the energy by the stretch
-// of isochoric deformations; fibres in compression carry nothing.
+// at constant volume; fibres in compression carry nothing.
 // @tests{solid-fibre-dispersion}
 TEST(HolzapfelGasserOgden, HasTheStressesOfItsEnergy) {
   const double mu = 8e3, k1 = 2.4e3, k2 = 0.8, gamma = 0.7;

@@ -34,8 +34,8 @@ class BothOgdens : public testing::TestWithParam<bool> {
   std::unique_ptr<const solids::Material> material_ = ogden(GetParam());
 };
 
-// R. W. Ogden, Large deformation isotropic elasticity, 1972: principal stresses without a change
-// of volume, up to a pressure.
+// R. W. Ogden, Large deformation isotropic elasticity, 1972: principal stresses at constant volume,
+// up to a pressure.
 TEST_P(BothOgdens, HasThePrincipalStressesOfItsEnergy) {
   const auto slope = [](double stretch) {
     double sum = 0.0;

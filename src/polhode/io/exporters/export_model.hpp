@@ -36,8 +36,8 @@ struct Exported {
 /// Whether a file name has the ending of a format that can be written.
 [[nodiscard]] bool is_exportable(const std::string& file);
 
-/// A model at its start as another program's file. Paths of meshes in it are relative to the folder
-/// of the file. Nothing is written to the disk.
+/// A model at its start as another program's file, in which paths of meshes are relative to its
+/// folder. Nothing is written to the disk.
 /// @param simulation  The model with its bodies at the present state, which is the start.
 /// @throws ModelErrors with all that the format cannot represent, unless allow_partial is set, and
 /// names that no file may have.

@@ -10,7 +10,7 @@
 
 namespace polhode::io {
 
-/// What a format can represent.
+/// Abilities of a format.
 struct ExportAbilities {
   std::string name;                 ///< With its article: "a URDF".
   std::vector<std::string> joints;  ///< Types of joints of a model.

@@ -211,8 +211,8 @@ inline P square_root(P x) {
 }
 
 /// Three arguments x, y, z close to each other, for divided differences by Taylor's series about
-/// their mean m: f[x, y, z] = Σ_k f⁽ᵏ⁾(m)/k! h_{k−2}, with h the complete homogeneous polynomials
-/// of the distances from m. h_1 = 0.
+/// their mean m: f[x, y, z] = Σ_k f⁽ᵏ⁾(m)/k! h_{k−2}, where h are the complete homogeneous
+/// polynomials in the distances from m, and h_1 = 0.
 template <class P>
 struct CloseTriple {
   P h_2, h_3, h_4;  ///< Of distances relative to m.
