@@ -35,11 +35,12 @@ TEST_F(CommandLine, PrintsGradientsAsJson) {
 }
 
 TEST_F(CommandLine, RefusesAGradientByNameWithExitCode3) {
-  const auto result = run({"gradient", "model.yaml", "--set", "analysis.rho_inf=0.8", "--of",
-                           "probes.tip.z", "--with", "gravity.2"});
+  const auto result = run({"gradient", "model.yaml", "--set", "analysis.momentum_rate=kinematic",
+                           "--of", "probes.tip.z", "--with", "gravity.2"});
   EXPECT_EQ(result.code, 3);
-  EXPECT_THAT(result.err, HasSubstr("rho_inf"));
-  EXPECT_THAT(result.err, HasSubstr("is 0.8, but gradients exist for rho_inf: 1 only"));
+  EXPECT_THAT(result.err, HasSubstr("analysis.momentum_rate"));
+  EXPECT_THAT(result.err,
+              HasSubstr("is kinematic, but gradients exist for the momentum form only"));
   EXPECT_EQ(run({"gradient", "model.yaml", "--of", "probes.tip.z"}).code, 2);
 }
 
