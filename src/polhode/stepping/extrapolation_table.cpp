@@ -71,10 +71,20 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   bool hard = false;
   const auto columns = static_cast<std::size_t>(way.columns);
   difference_before_ = 0.0;
+  const auto hopeless = [&] {
+    if (columns < 3) return false;
+    difference_before_ = compare_columns(columns - 1, H);
+    // What the last member and one more divide the leading error by. The estimate of the first
+    // column but one has a lower order and shows nothing.
+    const double gain = counts_[columns - 1] * (counts_[columns - 1] + 2.0) / 4.0;
+    difference_ = difference_before_ / gain;
+    return columns > 3 && way.allowed > 0.0 && difference_before_ > gain * gain * way.allowed;
+  };
   std::vector<MemberEnd> ends;
   if (threads_) {
     std::fill_n(members_.begin(), columns, state);
-    ends = threads_->take({members_.data(), columns}, counts_, H, single, newton, way.fresh);
+    ends =
+        threads_->take({members_.data(), columns}, counts_, H, single, newton, way.fresh, hopeless);
   }
   for (std::size_t j = 0; j < columns; ++j) {
     MemberEnd end = threads_ ? std::move(ends[j]) : MemberEnd{};
@@ -87,16 +97,8 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
     met_stop_ = end.met_stop;
     report.iterations = iterations += report.iterations;
     report.hard = hard = hard || report.hard;
-    bool hopeless = false;
-    if (report.converged && j > 0 && j + 2 == columns) {
-      difference_before_ = compare_columns(j + 1, H);
-      // What the last member and one more divide the leading error by. The estimate of the first
-      // column but one has a lower order and shows nothing.
-      const double gain = counts_[columns - 1] * (counts_[columns - 1] + 2.0) / 4.0;
-      hopeless = j > 1 && way.allowed > 0.0 && difference_before_ > gain * gain * way.allowed;
-      difference_ = difference_before_ / gain;
-    }
-    if (!report.converged || met_stop_ || hopeless) {
+    const bool ends_here = !report.converged || met_stop_ || (j + 2 == columns && hopeless());
+    if (ends_here) {
       state.ledger.iterations += iterations;
       return report;
     }

@@ -10,7 +10,8 @@ namespace polhode {
 
 namespace {
 
-/// Members by thread: the longest first, each to the thread with the fewest steps so far.
+/// Members by thread: the longest first, each to the thread with the fewest steps so far. A thread
+/// begins with its shortest one, which is the first to show that others are of no use.
 std::vector<std::vector<std::size_t>> divided(const std::vector<int>& steps, std::size_t count,
                                               std::size_t threads) {
   std::vector<std::size_t> order(count);
@@ -24,18 +25,20 @@ std::vector<std::vector<std::size_t>> divided(const std::vector<int>& steps, std
     parts[static_cast<std::size_t>(least - sums.begin())].push_back(member);
     *least += steps[member];
   }
+  for (std::vector<std::size_t>& part : parts) std::sort(part.begin(), part.end());
   return parts;
 }
 
 }  // namespace
 
 MemberEnd take_member(State& member, int steps, double H, SingleStep& single,
-                      const NewtonOptions& newton, bool fresh) {
+                      const NewtonOptions& newton, bool fresh,
+                      const std::function<bool()>& useless) {
   MemberEnd end;
   int iterations = 0;
   bool hard = false;
   single.ledger().forget();
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0; k < steps && !(useless && useless()); ++k) {
     SingleStep::Predictor predictor;
     predictor.degree = fresh && k == 0 ? -1 : step_control::kMemberDegree;
     predictor.watch_stops = true;
@@ -63,12 +66,27 @@ std::unique_ptr<MemberThreads> MemberThreads::make(const SingleStep& single, int
 
 std::vector<MemberEnd> MemberThreads::take(std::span<State> members, const std::vector<int>& steps,
                                            double H, SingleStep& single,
-                                           const NewtonOptions& newton, bool fresh) {
+                                           const NewtonOptions& newton, bool fresh,
+                                           const std::function<bool()>& hopeless) {
   std::vector<MemberEnd> ends(members.size());
   const auto parts = divided(steps, members.size(), workers_.size() + 1);
+  std::atomic<std::size_t> useful{members.size()};    // members from here on are of no use
+  std::atomic<std::size_t> left{members.size() - 1};  // members that have not ended, but the last
+  const auto end_from = [&](std::size_t j) {
+    std::size_t now = useful;
+    while (j < now && !useful.compare_exchange_weak(now, j)) {
+    }
+  };
   const auto take_part = [&](std::size_t part, SingleStep& by) {
-    for (const std::size_t j : parts[part])
-      ends[j] = take_member(members[j], steps[j], H, by, newton, fresh);
+    for (const std::size_t j : parts[part]) {
+      const auto useless = [&, j] { return j >= useful.load(std::memory_order_relaxed); };
+      ends[j] = take_member(members[j], steps[j], H, by, newton, fresh, useless);
+      if (useless()) continue;
+      if (!ends[j].report.converged || ends[j].met_stop)
+        end_from(j + 1);
+      else if (j + 1 < members.size() && left.fetch_sub(1) == 1 && hopeless())
+        end_from(members.size() - 1);
+    }
   };
   std::size_t started = 0;
   for (; started < workers_.size() && !parts[started + 1].empty(); ++started) {
