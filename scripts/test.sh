@@ -92,6 +92,13 @@ unit_tests_under_sanitizers() {
   done
 }
 
+# Simulations in threads under the thread sanitizer; a program without tests has failed.
+thread_tests() {
+  local program=build/threads/tests/polhode_thread_tests
+  "$program" --gtest_list_tests | grep -q '^  ' || { echo "$program has no tests"; return 1; }
+  TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 "$program"
+}
+
 configure_and_build() {
   local preset=$1
   shift
@@ -121,8 +128,7 @@ fi
 # Everything is compiled for the sanitizer, but only one program of tests is made.
 if [ "$threads" = yes ]; then
   targets=polhode_thread_tests check "thread sanitizer build" configure_and_build threads &&
-    check "simulations in threads" env TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
-      build/threads/tests/polhode_thread_tests
+    check "simulations in threads" thread_tests
   finish
 fi
 
