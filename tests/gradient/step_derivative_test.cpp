@@ -36,6 +36,21 @@ struct Step {
   }
 };
 
+/// Check that the pull is the transpose of the push, for vectors of no structure.
+void expect_transpose(StepDerivative& derivative, Eigen::Index inputs) {
+  Vec dy(derivative.state_size()), mu(derivative.state_size()), R(inputs);
+  for (Eigen::Index i = 0; i < dy.size(); ++i) {
+    dy[i] = std::cos(1.0 + 2.4 * static_cast<double>(i));
+    mu[i] = std::sin(2.0 + 1.7 * static_cast<double>(i));
+  }
+  for (Eigen::Index i = 0; i < R.size(); ++i) R[i] = std::cos(0.3 + 1.1 * static_cast<double>(i));
+  Vec forward = dy, backward = mu;
+  derivative.push(R, forward);
+  const Vec eta = derivative.pull(backward);
+  const double a = mu.dot(forward), b = backward.dot(dy) + eta.dot(R);
+  EXPECT_NEAR(a, b, 1e-11 * forward.norm() * mu.norm());
+}
+
 /// @tests{reversed-step}
 TEST(ReversedStep, HasTheSameForcesAndTurnsBackIntoItself) {
   const Step s;
@@ -160,17 +175,7 @@ TEST(StepDerivative, OfADampedStepPulledBackIsTheTransposeOfThePush) {
     derivative.linearize(from, to, derivative.trial(from, to, to.dt_last));
     EXPECT_EQ(derivative.state_size(), 30 * 2);
     EXPECT_LT(derivative.jump(), 1e-9);
-    Vec dy(derivative.state_size()), mu(derivative.state_size()), R(derivative.inputs());
-    for (Eigen::Index i = 0; i < dy.size(); ++i) {
-      dy[i] = std::cos(1.0 + 2.4 * static_cast<double>(i));
-      mu[i] = std::sin(2.0 + 1.7 * static_cast<double>(i));
-    }
-    for (Eigen::Index i = 0; i < R.size(); ++i) R[i] = std::cos(0.3 + 1.1 * static_cast<double>(i));
-    Vec forward = dy, backward = mu;
-    derivative.push(R, forward);
-    const Vec eta = derivative.pull(backward);
-    const double a = mu.dot(forward), b = backward.dot(dy) + eta.dot(R);
-    EXPECT_NEAR(a, b, 1e-11 * forward.norm() * mu.norm());
+    expect_transpose(derivative, derivative.inputs());
   }
 }
 
@@ -179,17 +184,7 @@ TEST(StepDerivative, PulledBackIsTheTransposeOfThePush) {
   const Step s;
   StepDerivative derivative(s.simulation.system());
   derivative.linearize(s.from, s.to, derivative.trial(s.from, s.to, s.to.dt_last));
-  Vec dy(derivative.state_size()), mu(derivative.state_size()), R(derivative.unknowns());
-  for (Eigen::Index i = 0; i < dy.size(); ++i) {
-    dy[i] = std::cos(1.0 + 2.4 * static_cast<double>(i));
-    mu[i] = std::sin(2.0 + 1.7 * static_cast<double>(i));
-  }
-  for (Eigen::Index i = 0; i < R.size(); ++i) R[i] = std::cos(0.3 + 1.1 * static_cast<double>(i));
-  Vec forward = dy, backward = mu;
-  derivative.push(R, forward);
-  const Vec eta = derivative.pull(backward);
-  const double a = mu.dot(forward), b = backward.dot(dy) + eta.dot(R);
-  EXPECT_NEAR(a, b, 1e-11 * forward.norm() * mu.norm());
+  expect_transpose(derivative, derivative.unknowns());
   EXPECT_LT(derivative.defect(), 1e-12);
 }
 

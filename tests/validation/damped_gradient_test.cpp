@@ -5,9 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <gradient/gradient_runs.hpp>
-#include <polhode/io/text/file_error.hpp>
-#include <support/paths.hpp>
+#include <gradient/gradient_models.hpp>
 
 namespace polhode::test::damped_gradient_tests {
 namespace {
@@ -21,30 +19,6 @@ double difference(GradientCase c, double rho_inf) {
   return difference_from_runs(c, 3e-3, 1e-10);
 }
 
-std::string example(const char* name, const std::string& more = "") {
-  return io::read_file(source_dir() + "/examples/" + name + "/model.yaml") + more;
-}
-
-GradientCase double_pendulum(double step, int steps) {
-  return {R"yaml(
-format: 1
-gravity: [0, 0, -9.81]
-variables: {a: 0.3 m, speed: 2 rad/s}
-bodies:
-  one: {mass: 1.2, inertia: [2e-2, 3e-2, 1e-2], position: [a, 0, 0], angular_velocity: [0, speed, 0.5]}
-  two: {mass: 0.7, inertia: [1e-2, 2e-2, 1.5e-2], position: [0.6, 0.2, 0]}
-joints:
-  A: {type: spherical, bodies: [ground, one], at: [0, 0, 0]}
-  B: {type: revolute, bodies: [one, two], at: [0.6, 0.01, 0], axis: [0.3, 0.1, 1]}
-analysis: {duration: 1 s, step: 10 ms}
-)yaml",
-          step,
-          steps,
-          {"a", "speed", "bodies.one.mass", "bodies.two.inertia.1", "joints.B.axis.0",
-           "joints.B.at.1", "gravity.2"},
-          {"bodies.two.position.z@end"}};
-}
-
 /// @tests{damped-step-derivative}
 TEST(DampedGradient, OfADoublePendulumIsThatOfDifferencesOfRunsAtAnyStep) {
   for (const double rho : kRadii) {
@@ -56,17 +30,11 @@ TEST(DampedGradient, OfADoublePendulumIsThatOfDifferencesOfRunsAtAnyStep) {
 
 /// @tests{damped-step-derivative}
 TEST(DampedGradient, OfALoopWithSpringDamperAndDriveIsExactAtAnyStep) {
-  const std::string loads = R"yaml(
-loads:
-  spring: {type: spring_damper, bodies: [ground, slider], at: [[-0.2, 0.05, 0], [0.2, 0, 0]], stiffness: 40, damping: 3, free_length: 0.3}
-  twist: {type: torsional_spring, joint: A, stiffness: 0.2, damping: 0.01, free_angle: 0.3}
-  drive: {type: moment, body: crank, moment: [0.1*sin(20*t), 0, 0]}
-)yaml";
   for (const double rho : kRadii)
     for (const auto& [step, steps] :
          {std::pair(0.02, 12), std::pair(0.004, 60), std::pair(4e-5, 300)})
       EXPECT_LT(
-          difference({example("spatial_slider_crank", loads),
+          difference({example_text("spatial_slider_crank", kSliderCrankLoads),
                       step,
                       steps,
                       {"loads.spring.stiffness", "loads.spring.damping", "loads.spring.free_length",
@@ -138,44 +106,23 @@ analysis: {duration: 1 s, step: 10 ms}
 }
 
 TEST(DampedGradient, OfMotorsServosAndGearsIsExact) {
-  const std::string drives = R"yaml(
-format: 1
-gravity: [0, 0, -9.81]
-variables: {w: 3 rad/s, amp: 0.3, k: 25, ratio: 2.5}
-bodies:
-  one: {mass: 1.2, inertia: [2e-2, 3e-2, 1e-2], position: [0.3, 0, 0]}
-  two: {mass: 0.7, inertia: [1e-2, 2e-2, 1.5e-2], position: [0.6, 0.2, 0]}
-  three: {mass: 0.4, inertia: [1e-2, 2e-2, 1.5e-2], position: [0.6, 0.5, 0.1]}
-  disc: {mass: 0.4, inertia: [1e-2, 2e-2, 1.5e-2], position: [0, 0, 1]}
-joints:
-  A: {type: revolute, bodies: [ground, one], at: [0, 0, 0], axis: [0, 1, 0.2]}
-  B: {type: revolute, bodies: [one, two], at: [0.6, 0, 0], axis: [0.3, 0.1, 1]}
-  C: {type: prismatic, bodies: [two, three], at: [0.6, 0.5, 0.1], axis: [0, 1, 0.3]}
-  D: {type: revolute, bodies: [ground, disc], at: [0, 0, 1], axis: z}
-loads:
-  drive: {type: rotary_motor, joint: A, angle: amp*(1 - cos(5*t))}
-  turn: {type: rotary_motor, joint: B, speed: w*t}
-  slide: {type: linear_servo, joint: C, displacement: 0.05*sin(4*t), stiffness: 10*k, damping: 2}
-  gear: {type: gear, joints: [D, A], ratio: ratio}
-analysis: {duration: 1 s, step: 10 ms}
-)yaml";
   const std::vector<std::string> by{"w", "amp", "k", "bodies.three.mass"};
   for (const double rho : {0.0, 0.8}) {
-    EXPECT_LT(difference({drives, 0.01, 60, by, {"bodies.three.position.x@end"}}, rho), 1e-9);
-    EXPECT_LT(difference({drives, 0.01, 60, {"amp", "ratio"}, {"joints.D.rz@end"}}, rho), 1e-9);
+    EXPECT_LT(difference({kDrives, 0.01, 60, by, {"bodies.three.position.x@end"}}, rho), 1e-9);
+    EXPECT_LT(difference({kDrives, 0.01, 60, {"amp", "ratio"}, {"joints.D.rz@end"}}, rho), 1e-9);
   }
 }
 
 TEST(DampedGradient, OfSpinsWheelsGovernorAndBeamsIsExact) {
   for (const double rho : {0.0, 0.8}) {
-    EXPECT_LT(difference({example("gyroscope"),
+    EXPECT_LT(difference({example_text("gyroscope"),
                           0.001,
                           60,
                           {"variables.spin", "variables.arm", "variables.steel"},
                           {"bodies.weight.position.y@end"}},
                          rho),
               1e-9);
-    EXPECT_LT(difference({example("bicycle"),
+    EXPECT_LT(difference({example_text("bicycle"),
                           0.005,
                           60,
                           {"variables.v", "variables.push", "bodies.frame.mass"},
@@ -183,7 +130,7 @@ TEST(DampedGradient, OfSpinsWheelsGovernorAndBeamsIsExact) {
                          rho),
               1e-9);
     // Differences end at 1e-11 of a length, and at the beams' rounding.
-    EXPECT_LT(difference({example("flyball_governor"),
+    EXPECT_LT(difference({example_text("flyball_governor"),
                           0.002,
                           40,
                           {"variables.m_ball", "variables.turn", "loads.spring_a.stiffness",
@@ -191,7 +138,7 @@ TEST(DampedGradient, OfSpinsWheelsGovernorAndBeamsIsExact) {
                           {"bodies.slider.position.z@end"}},
                          rho),
               1e-8);
-    EXPECT_LT(difference({example("flexible_four_bar"),
+    EXPECT_LT(difference({example_text("flexible_four_bar"),
                           0.001,
                           15,
                           {"materials.polyamide.youngs_modulus", "materials.polyamide.density",
@@ -204,7 +151,7 @@ TEST(DampedGradient, OfSpinsWheelsGovernorAndBeamsIsExact) {
 
 TEST(DampedGradient, OfRedundantLoopsHasFewerDigitsAndSaysSo) {
   for (const auto& [step, steps] : {std::pair(0.05, 8), std::pair(0.01, 40), std::pair(1e-3, 50)}) {
-    GradientCase c{example("bricard"),
+    GradientCase c{example_text("bricard"),
                    step,
                    steps,
                    {"variables.L", "variables.w", "bodies.rod_1.mass"},

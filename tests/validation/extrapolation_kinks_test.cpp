@@ -75,7 +75,7 @@ TEST(ExtrapolationKinks, AMassBouncesOnASpringThatOnlyPushes) {
 }
 
 TEST(ExtrapolationKinks, AMassHangsOnACableThatGoesSlack) {
-  // The same motion upside down: thrown up by the cable, falling into it.
+  // Motion of the spring upside down: thrown up by the cable, falling into it.
   const std::string text =
       "format: 1\ngravity: [0, 0, 9.81]\nbodies:\n"
       "  ball: {mass: 2, inertia: [1, 1, 1], position: [0, 0, -0.4]}\n"

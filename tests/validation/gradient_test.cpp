@@ -6,39 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <gradient/gradient_runs.hpp>
+#include <gradient/gradient_models.hpp>
 #include <polhode/core/error.hpp>
-#include <polhode/io/text/file_error.hpp>
-#include <support/paths.hpp>
 
 namespace polhode::test::gradient_tests {
 namespace {
-
-constexpr const char* kDoublePendulum = R"yaml(
-format: 1
-gravity: [0, 0, -9.81]
-variables: {a: 0.3 m, speed: 2 rad/s}
-bodies:
-  one: {mass: 1.2, inertia: [2e-2, 3e-2, 1e-2], position: [a, 0, 0], angular_velocity: [0, speed, 0.5]}
-  two: {mass: 0.7, inertia: [1e-2, 2e-2, 1.5e-2], position: [0.6, 0.2, 0]}
-joints:
-  A: {type: spherical, bodies: [ground, one], at: [0, 0, 0]}
-  B: {type: revolute, bodies: [one, two], at: [0.6, 0.01, 0], axis: [0.3, 0.1, 1]}
-analysis: {duration: 1 s, step: 10 ms}
-output:
-  probes:
-    tip: {body: two, point: [0.1, 0.3, 0]}
-)yaml";
-
-GradientCase double_pendulum(double step, int steps, int order = 2) {
-  return {kDoublePendulum,
-          step,
-          steps,
-          {"a", "speed", "bodies.one.mass", "bodies.two.inertia.1", "joints.B.axis.0",
-           "joints.B.at.1", "gravity.2"},
-          {"bodies.two.position.z@end"},
-          order};
-}
 
 /// @tests{step-derivative} @tests{parameter-difference}
 TEST(RunGradient, OfADoublePendulumIsThatOfDifferencesOfRunsAtAnyStep) {
@@ -62,22 +34,11 @@ TEST(RunGradient, IsExactForVelocitiesAnglesAndProbes) {
   }
 }
 
-/// An example of the program, with more loads.
-std::string example(const char* name, const std::string& more = "") {
-  return io::read_file(source_dir() + "/examples/" + name + "/model.yaml") + more;
-}
-
 TEST(RunGradient, OfASpatialSliderCrankWithSpringDamperAndDriveIsExact) {
-  const std::string loads = R"yaml(
-loads:
-  spring: {type: spring_damper, bodies: [ground, slider], at: [[-0.2, 0.05, 0], [0.2, 0, 0]], stiffness: 40, damping: 3, free_length: 0.3}
-  twist: {type: torsional_spring, joint: A, stiffness: 0.2, damping: 0.01, free_angle: 0.3}
-  drive: {type: moment, body: crank, moment: [0.1*sin(20*t), 0, 0]}
-)yaml";
   for (const auto& [step, steps] :
        {std::pair(0.02, 12), std::pair(0.004, 60), std::pair(4e-5, 300)})
     EXPECT_LT(difference_from_runs(
-                  {example("spatial_slider_crank", loads),
+                  {example_text("spatial_slider_crank", kSliderCrankLoads),
                    step,
                    steps,
                    {"loads.spring.stiffness", "loads.spring.damping", "loads.spring.free_length",
@@ -88,7 +49,7 @@ loads:
 }
 
 TEST(RunGradient, OfRedundantLoopsIsExact) {
-  EXPECT_LT(difference_from_runs({example("bricard"),
+  EXPECT_LT(difference_from_runs({example_text("bricard"),
                                   0.01,
                                   40,
                                   {"variables.L", "variables.w", "bodies.rod_1.mass"},
@@ -97,7 +58,7 @@ TEST(RunGradient, OfRedundantLoopsIsExact) {
 }
 
 TEST(RunGradient, OfAFastGyroscopeIsExact) {
-  EXPECT_LT(difference_from_runs({example("gyroscope"),
+  EXPECT_LT(difference_from_runs({example_text("gyroscope"),
                                   0.001,
                                   60,
                                   {"variables.spin", "variables.arm", "variables.steel"},
@@ -107,7 +68,7 @@ TEST(RunGradient, OfAFastGyroscopeIsExact) {
 
 TEST(RunGradient, OfAGovernorWithStiffSpringsIsExact) {
   // Its derivatives by stiffness and damping are 1e-11 and 1e-10, where differences end.
-  EXPECT_LT(difference_from_runs({example("flyball_governor"),
+  EXPECT_LT(difference_from_runs({example_text("flyball_governor"),
                                   0.002,
                                   40,
                                   {"variables.m_ball", "variables.turn", "loads.spring_a.stiffness",
@@ -117,7 +78,7 @@ TEST(RunGradient, OfAGovernorWithStiffSpringsIsExact) {
 }
 
 TEST(RunGradient, OfWheelsThatRollIsExact) {
-  EXPECT_LT(difference_from_runs({example("bicycle"),
+  EXPECT_LT(difference_from_runs({example_text("bicycle"),
                                   0.005,
                                   60,
                                   {"variables.v", "variables.push", "bodies.frame.mass"},
@@ -127,7 +88,7 @@ TEST(RunGradient, OfWheelsThatRollIsExact) {
 
 TEST(RunGradient, OfBeamsIsExact) {
   // The beams' rounding limits differences of runs.
-  EXPECT_LT(difference_from_runs({example("flexible_four_bar"),
+  EXPECT_LT(difference_from_runs({example_text("flexible_four_bar"),
                                   0.001,
                                   15,
                                   {"materials.polyamide.youngs_modulus",
@@ -212,31 +173,10 @@ joints:
 }
 
 TEST(RunGradient, OfMotorsServosAndGearsIsExact) {
-  const std::string drives = R"yaml(
-format: 1
-gravity: [0, 0, -9.81]
-variables: {w: 3 rad/s, amp: 0.3, k: 25, ratio: 2.5}
-bodies:
-  one: {mass: 1.2, inertia: [2e-2, 3e-2, 1e-2], position: [0.3, 0, 0]}
-  two: {mass: 0.7, inertia: [1e-2, 2e-2, 1.5e-2], position: [0.6, 0.2, 0]}
-  three: {mass: 0.4, inertia: [1e-2, 2e-2, 1.5e-2], position: [0.6, 0.5, 0.1]}
-  disc: {mass: 0.4, inertia: [1e-2, 2e-2, 1.5e-2], position: [0, 0, 1]}
-joints:
-  A: {type: revolute, bodies: [ground, one], at: [0, 0, 0], axis: [0, 1, 0.2]}
-  B: {type: revolute, bodies: [one, two], at: [0.6, 0, 0], axis: [0.3, 0.1, 1]}
-  C: {type: prismatic, bodies: [two, three], at: [0.6, 0.5, 0.1], axis: [0, 1, 0.3]}
-  D: {type: revolute, bodies: [ground, disc], at: [0, 0, 1], axis: z}
-loads:
-  drive: {type: rotary_motor, joint: A, angle: amp*(1 - cos(5*t))}
-  turn: {type: rotary_motor, joint: B, speed: w*t}
-  slide: {type: linear_servo, joint: C, displacement: 0.05*sin(4*t), stiffness: 10*k, damping: 2}
-  gear: {type: gear, joints: [D, A], ratio: ratio}
-analysis: {duration: 1 s, step: 10 ms}
-)yaml";
   const std::vector<std::string> by{"w", "amp", "k", "bodies.three.mass"};
-  EXPECT_LT(difference_from_runs({drives, 0.01, 60, by, {"bodies.three.position.x@end"}}), 1e-9);
-  EXPECT_LT(difference_from_runs({drives, 0.01, 60, by, {"bodies.three.velocity.y@end"}}), 1e-9);
-  EXPECT_LT(difference_from_runs({drives, 0.01, 60, {"amp", "ratio"}, {"joints.D.rz@end"}}), 1e-9);
+  EXPECT_LT(difference_from_runs({kDrives, 0.01, 60, by, {"bodies.three.position.x@end"}}), 1e-9);
+  EXPECT_LT(difference_from_runs({kDrives, 0.01, 60, by, {"bodies.three.velocity.y@end"}}), 1e-9);
+  EXPECT_LT(difference_from_runs({kDrives, 0.01, 60, {"amp", "ratio"}, {"joints.D.rz@end"}}), 1e-9);
 }
 
 constexpr const char* kThrown = R"yaml(

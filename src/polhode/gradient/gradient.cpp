@@ -30,8 +30,8 @@ constexpr double kJumped = 1e-5;
 /// Remainder of a linear system of a step above which it has no solution: geometry that breaks a
 /// loop leaves 1e-2 or more, all else 1e-14.
 constexpr double kUnsolved = 1e-8;
-/// The same for ρ∞ < 1, where forces of redundant rows move the bodies a little: the remainder of
-/// these is 1e-8 to 1e-7 at long steps.
+/// Remainder for ρ∞ < 1, where forces of redundant rows move the bodies a little, which leaves 1e-8
+/// to 1e-7 at long steps.
 constexpr double kUnsolvedDamped = 1e-5;
 /// Difference of times, as a part of the step, within which they are equal.
 constexpr double kSameInstant = 1e-6;

@@ -74,8 +74,8 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   const auto hopeless = [&] {
     if (columns < 3) return false;
     difference_before_ = compare_columns(columns - 1, H);
-    // What the last member and one more divide the leading error by. The estimate of the first
-    // column but one has a lower order and shows nothing.
+    // Factor by which the last member and one more reduce the leading error. The estimate of the
+    // first column but one has a lower order and shows nothing.
     const double gain = counts_[columns - 1] * (counts_[columns - 1] + 2.0) / 4.0;
     difference_ = difference_before_ / gain;
     return columns > 3 && way.allowed > 0.0 && difference_before_ > gain * gain * way.allowed;

@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// Numbers that are asked of every run of a batch: columns of a body, a joint, a load or a probe.
+/// Channel of a batch, recorded of every run: columns of a body, a joint, a load or a probe.
 struct BatchChannel {
   std::string text;                    ///< As asked: "bodies.rod.position", "probes.tip.x".
   std::string unit;                    ///< Of its first number; "-" for none.
@@ -26,7 +26,7 @@ struct BatchChannel {
 /// @throws InputError if the model has no such object, or that no such quantity.
 [[nodiscard]] BatchChannel batch_channel(const Model& model, const std::string& text);
 
-/// Channels of a model for which nothing is asked: its probes, or, without any, positions and
+/// Default channels of a model: its probes, or, without any, positions and
 /// orientations of its moving bodies.
 [[nodiscard]] std::vector<std::string> usual_channels(const Model& model);
 

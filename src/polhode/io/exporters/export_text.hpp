@@ -17,8 +17,8 @@ namespace polhode::io {
 [[nodiscard]] std::string numbers_text(std::initializer_list<double> list);
 [[nodiscard]] std::string vector_text(const Vec3& x);
 
-/// Roll, pitch, yaw about fixed axes of R = Rz(yaw) Ry(pitch) Rx(roll), exact to rounding also
-/// where the pitch is ±90 degrees.
+/// Roll, pitch, yaw about fixed axes of R = Rz(yaw) Ry(pitch) Rx(roll), exact to rounding at
+/// pitches of ±90 degrees, too.
 [[nodiscard]] Vec3 rpy_of_rotation(const Mat3& R);
 
 /// The colour "#rrggbb" of a body as "r g b 1" between 0 and 1; "" if it has none.

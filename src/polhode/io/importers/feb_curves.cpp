@@ -70,7 +70,7 @@ Powers piece_before(const FebCurve& curve, std::size_t n) {
   return line(p[n - 1], p[n], origin);
 }
 
-/// The same polynomial in powers of the time since another instant.
+/// Polynomial of a piece in powers of the time since another instant.
 FebPiece moved(FebPiece piece, double from) {
   Powers& c = piece.powers;
   const double shift = from - piece.from;
