@@ -29,7 +29,7 @@ def run(
     overrides: Overrides = None,
     output: "Union[str, os.PathLike[str], None]" = None,
     progress: "Optional[bool]" = None,
-    threads: int = 1,
+    threads: "Optional[int]" = None,
 ) -> Result:
     """Runs a model to the end of its analysis and returns the results.
 
@@ -37,7 +37,8 @@ def run(
     overrides: changes for this run only, by path: {"analysis.step": "1 ms", "variables.L": 2}.
     output:    a folder for the files that `polhode run -o` writes; None: results in memory only.
     progress:  show a bar with tqdm; None: if tqdm is installed and the run takes more than a second.
-    threads:   for the members of extrapolated steps; results have the same bits with any number.
+    threads:   for the members of extrapolated steps, instead of the model's analysis.threads; results have the same
+               bits with any number.
 
     Frames are stored at output.every. Without it they are all steps, but for runs in memory of more than
     10,000 fixed steps: then equally spaced ones, at most 10,001, which the log says. Probes without a rate of their own
@@ -46,14 +47,15 @@ def run(
     Raises ModelError for a model with faults, NotConverged (with `result`) if a step does not
     converge, OSError if the folder cannot be written.
     """
-    if threads < 1:
-        raise ValueError(f"threads is {threads}; give 1 or more")
-    return _run(model, overrides, output, progress, False, threads)
+    if threads is not None:
+        if threads < 1:
+            raise ValueError(f"threads is {threads}; give 1 or more")
+        overrides = {**(overrides or {}), "analysis.threads": threads}
+    return _run(model, overrides, output, progress, False)
 
 
 def _run(model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides,
-         output: "Union[str, os.PathLike[str], None]", progress: "Optional[bool]", all_steps: bool,
-         threads: int = 1) -> Result:
+         output: "Union[str, os.PathLike[str], None]", progress: "Optional[bool]", all_steps: bool) -> Result:
     """A run as above; with all_steps they are frames without output.every, however many."""
     if not isinstance(model, Model):
         model = load(model)
@@ -65,11 +67,7 @@ def _run(model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides,
         compiled = model._compile({**(overrides or {}), **thinned})
     if compiled.analysis == "modes":
         raise fault("analysis.type", "an analysis of modes has no motion", "Call polhode.modes(model)")
-    _native.set_threads(threads)  # an engine takes the number that it finds
-    try:
-        engine = _native.Engine(compiled)
-    finally:
-        _native.set_threads(1)
+    engine = _native.Engine(compiled)
     recording = engine.record()
     end = 1.0 if compiled.analysis == "statics" else compiled.duration
     with Bar(end, progress) as bar:

@@ -13,6 +13,7 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
+from . import _native
 from ._errors import NotConverged
 from ._gradient import gradients as gradients_of
 from ._gradient import source_of
@@ -196,7 +197,7 @@ def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
 
     left, deaths = dict(tasks), 0
     while left:
-        with ProcessPoolExecutor(processes or os.cpu_count(), mp_context=get_context("spawn")) as pool:
+        with ProcessPoolExecutor(processes or os.cpu_count(), get_context("spawn"), _native.set_threads, (1,)) as pool:
             waiting = {pool.submit(_one, task): i for i, task in left.items()}
             try:
                 while waiting:

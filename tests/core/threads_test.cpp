@@ -11,11 +11,11 @@ namespace polhode::threads_tests {
 namespace {
 
 TEST(Threads, AtLeastOne) {
-  EXPECT_EQ(threads_of_runs(), 1);
+  EXPECT_EQ(threads_of_runs(), 0);
   set_threads_of_runs(3);
   EXPECT_EQ(threads_of_runs(), 3);
-  set_threads_of_runs(0);
-  EXPECT_EQ(threads_of_runs(), 1);
+  set_threads_of_runs(-1);
+  EXPECT_EQ(threads_of_runs(), 0);
 }
 
 TEST(Threads, AWorkerDoesOneTaskAfterAnother) {

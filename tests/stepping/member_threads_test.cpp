@@ -16,7 +16,7 @@ RunSummary run_with(int threads, const std::string& example, const io::Overrides
   set_threads_of_runs(threads);
   Simulation simulation(
       io::read_model(test::source_dir() + "/examples/" + example + "/model.yaml", overrides));
-  set_threads_of_runs(1);
+  set_threads_of_runs(0);
   return simulation.run();
 }
 
@@ -81,7 +81,7 @@ TEST(MemberThreads, MeetAStopAlike) {
   for (const int threads : {1, 2, 4}) {
     set_threads_of_runs(threads);
     Simulation simulation(stopped(""));
-    set_threads_of_runs(1);
+    set_threads_of_runs(0);
     const RunSummary run = simulation.run();
     EXPECT_EQ(run.end, RunEnd::finished) << run.message;
     if (threads == 1) hash = run.result_hash;
@@ -95,7 +95,7 @@ TEST(MemberThreads, FailAlike) {
     set_threads_of_runs(threads);
     Simulation simulation(
         stopped("  push: {type: moment, body: bar, moment: [0, \"sqrt(0.2 - t)\", 0]}\n"));
-    set_threads_of_runs(1);
+    set_threads_of_runs(0);
     const RunSummary run = simulation.run();
     EXPECT_EQ(run.end, RunEnd::not_converged);
     if (threads == 1) message = run.message;
@@ -118,7 +118,7 @@ void expect_same_continued(const std::string& example, const io::Overrides& over
   }
   set_threads_of_runs(2);
   Simulation rest(model, half.state());
-  set_threads_of_runs(1);
+  set_threads_of_runs(0);
   for (int k = 0; k < 5; ++k) {
     ASSERT_TRUE(whole.step(end).accepted);
     ASSERT_TRUE(rest.step(end).accepted);

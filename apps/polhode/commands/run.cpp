@@ -8,7 +8,6 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
-#include <polhode/core/threads.hpp>
 #include <polhode/io/results/checkpoint.hpp>
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/schema/field_table.hpp>
@@ -34,7 +33,7 @@ struct RunOptions {
   ModelArguments model;
   std::string folder, restart, isa, duration;
   std::optional<double> wall_limit;
-  int threads = 1;
+  int threads = 0;
   bool json = false, quiet = false, certify = false, view = false, strict = false;
   CertifyRequest certificate;
 };
@@ -194,7 +193,8 @@ Action add_run(CLI::App& command) {
   add_isa_option(command, options->isa);
   command
       .add_option("--threads", options->threads,
-                  "Threads for the members of extrapolated steps; results have the same bits")
+                  "Threads for the members of extrapolated steps, instead of the model's; results have the "
+                      "same bits")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command.add_option("--restart", options->restart, "Continue from a checkpoint of this model")
@@ -212,9 +212,10 @@ Action add_run(CLI::App& command) {
   command.add_flag("--json", options->json, "Print the summary of the run as one JSON object");
   command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] {
-    set_threads_of_runs(options->threads);
     if (!options->duration.empty())
       options->model.overrides.push_back("analysis.duration=" + options->duration);
+    if (options->threads > 0)
+      options->model.overrides.push_back(format("analysis.threads={}", options->threads));
     if (!options->isa.empty()) options->model.overrides.push_back("analysis.isa=" + options->isa);
     return run(*options);
   };

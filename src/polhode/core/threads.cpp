@@ -13,7 +13,7 @@ namespace {
 constexpr int kLooks = 4000;
 
 std::atomic<int>& number_of_threads() {
-  static std::atomic<int> number{1};
+  static std::atomic<int> number{0};
   return number;
 }
 
@@ -28,7 +28,7 @@ void rest() {
 
 int threads_of_runs() { return number_of_threads(); }
 
-void set_threads_of_runs(int threads) { number_of_threads() = std::max(1, threads); }
+void set_threads_of_runs(int threads) { number_of_threads() = std::max(0, threads); }
 
 Worker::Worker() : thread_([this] { work(); }) {}
 

@@ -8,10 +8,11 @@
 
 namespace polhode {
 
-/// Number of threads of a run that begins from now on; the same for all runs of the program.
-/// Results have the same bits with any number. 1 at first.
+/// Number of threads of a run that begins from now on and whose model names none, for all runs of
+/// the program; 0, as at first: chosen by the size of the model. Results have the same bits with
+/// any number.
 [[nodiscard]] int threads_of_runs();
-/// @param threads  At least 1.
+/// @param threads  At least 0.
 void set_threads_of_runs(int threads);
 
 /// A thread that does one task after another. It waits for the next one actively for some

@@ -185,6 +185,8 @@ struct AnalysisSpec {
   std::string spin_ground = "stands";   ///< stands | turns.
   std::optional<TurningFrame> turning;  ///< Statics in this frame; set for modes about a spin.
   double checkpoint_every = 0.0;        ///< Wall-clock seconds; 0: only at the end.
+  /// Threads of one run, which do not change its results; absent: chosen by the model's size.
+  std::optional<int> threads;
   SourceLocation place;
 };
 

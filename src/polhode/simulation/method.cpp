@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <thread>
 
 #include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/threads.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/engines/sparse_engine.hpp>
@@ -42,6 +44,8 @@ constexpr int kIterationsContact = 40;
 constexpr int kManyBodies = 50;
 /// Default tolerance of automatic steps.
 constexpr double kDefaultError = 1e-6;
+/// Number of bodies and nodes from which on a run takes all processors.
+constexpr int kBodiesForThreads = 40;
 /// Number of loops open at one body below which the tree elimination is always faster.
 constexpr int kFewOpenLoops = 6;
 /// Ratio of the operation rates of the tree elimination and the block LU.
@@ -54,6 +58,15 @@ JacobianPolicy jacobian_policy(const std::string& word) {
   if (word == "never") return JacobianPolicy::never;
   throw InputError("analysis.jacobian", format("'{}' is not known", word),
                    "Use one of: automatic, every_iteration, every_step, never");
+}
+
+/// Number of threads: the model's, that of all runs, or one for each processor where members of an
+/// extrapolated step take much longer than handing them over.
+int number_of_threads(const System& system, const AnalysisSpec& a) {
+  if (a.threads) return *a.threads;
+  if (threads_of_runs() > 0) return threads_of_runs();
+  if (system.body_count() < kBodiesForThreads) return 1;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 /// Newton tolerance of extrapolated steps: that of automatic ones follows theirs.
@@ -174,6 +187,7 @@ Method choose_method(const System& system, const Model& model) {
   c.min_step = a.min_step.value_or(0.0);
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;
+  c.threads = number_of_threads(system, a);
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
                        : c.extrapolated          ? extrapolated_tolerance(a)
                        : has_slides(system)      ? kToleranceSlides

@@ -27,6 +27,7 @@ struct StepControl {
   double max_step = 0.0;       ///< 0: none [s].
   NewtonOptions newton;
   bool conserving = true;  ///< Potentials in discrete-gradient form.
+  int threads = 1;         ///< For members of extrapolated steps; results have the same bits.
 };
 
 /// Advances a state: predictor, Newton, acceptance, step control, compositions and

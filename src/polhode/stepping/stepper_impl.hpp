@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include <polhode/core/threads.hpp>
 #include <polhode/dynamics/composition.hpp>
 #include <polhode/stepping/drive_kinks.hpp>
 #include <polhode/stepping/extrapolation_table.hpp>
@@ -57,7 +56,7 @@ struct Stepper::Impl {
     least_error = std::max(kMinError, kStepRoundOff * extent(s) / s.length_scale()) *
                   (c.order > 2 ? kRoundOffComposed : 1.0);
     reach_of_bodies = std::max(s.length_scale(), extent(s));
-    if (c.extrapolated) table.emplace(s, c.order, single, threads_of_runs());
+    if (c.extrapolated) table.emplace(s, c.order, single, c.threads);
     if (table) return;
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);

@@ -112,6 +112,7 @@ class BatchWork {
     for (std::size_t run = from; run < to; ++run) {
       try {
         Model model = model_(run);
+        model.analysis.threads = 1;  // the runs share the processors
         if (batch_.why_alone.empty() && same_mechanism(first_, model))
           members.push_back({run, std::move(model)});
         else

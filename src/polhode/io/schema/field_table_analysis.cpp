@@ -230,6 +230,15 @@ const FieldTable& analysis_fields() {
            .range = kNotNegative,
            .member = &AnalysisSpec::checkpoint_every,
            .may_change = true},
+          {.name = "threads",
+           .kind = kInteger,
+           .meaning = "Threads of the run, for the members of extrapolated steps; results have the "
+                      "same bits with any number.",
+           .standard = "one for each processor from 40 bodies on; below that 1",
+           .range = {1, 1024},
+           .member = &AnalysisSpec::threads,
+           .may_change = true,
+           .since = "0.2"},
       }};
   return table;
 }
