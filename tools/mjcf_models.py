@@ -23,7 +23,8 @@ from robots import ROOT, in_own_environment, places, polhode, tabulate  # noqa: 
 VENV = ROOT / "build/mjcf"
 PACKAGES = ["mujoco==4.0.0", "numpy", "PyYAML"]
 FILES = ["dm-control==1.0.50", "gymnasium==1.4.0", "gymnasium-robotics==1.4.2"]
-OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false", "--set", "import.actuators=false"]
+OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false", "--set", "import.actuators=false",
+           "--set", "import.keyframe=none"]
 STEPS_MS = [(2, 1), (0.5, 0.25), (0.125, 0.0625)]
 ROUND_OFF = 1e-12  # Relative, of sums over a few dozen bodies.
 MESHES = 1e-7  # Likewise where they follow from meshes, whose points are in single precision there.

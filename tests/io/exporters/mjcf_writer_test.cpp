@@ -55,6 +55,26 @@ loads:
     expect_same(model, read, step, 10 * kRounding, kGrown);
 }
 
+// The keyframe of the file is the start where it is read again.
+TEST_F(Exports, KeepVelocitiesAndControls) {
+  const Model model = model_of(std::string(kBodies) + R"(
+  free: {mass: 1, inertia: [0.1, 0.2, 0.25], com: [0.1, 0.2, 0.3], position: [3, 0, 0], orientation: {axis: x, angle: 1}, velocity: [1, -2, 3], angular_velocity: [0.5, 1, -2]}
+joints:
+  shoulder: {type: revolute, bodies: [post, arm], at: [0.2, 0.1, 0.3], axis: [1, -1, 2], start: 0.4, start_rate: 1.5}
+  rail: {type: prismatic, bodies: [second, arm], at: [0.7, 0.2, 0.1], axis: [1, 1, 0.3], start: -0.05, start_rate: 0.2}
+  hinge: {type: revolute, bodies: [second, third], at: [1, 0.4, 0], axis: y, start: 2.5, start_rate: -0.7}
+loads:
+  servo: {type: rotary_servo, joint: shoulder, angle: 0.6, stiffness: 20, damping: 0.1, max_moment: 80}
+  motor: {type: linear_motor, joint: rail, force: 4}
+  fan: {type: rotary_servo, joint: hinge, speed: 3, damping: 0.5}
+)");
+  const Model read = again(model, "robot.xml");
+  for (const double step : {0.02, 0.005, 0.001})
+    expect_same(model, read, step, 10 * kRounding, kGrown);
+  const Model rest = again(model, "robot.xml", {"import.keyframe=none"});
+  EXPECT_EQ(rest.bodies.at(1).velocity, Vec3(0, 0, 0));
+}
+
 TEST_F(Exports, OfJointsWithSeveralCoordinatesAsAnMjcfMoveAsTheModel) {
   const Model model = model_of(std::string(kBodies) + R"(
 joints:

@@ -27,6 +27,12 @@ Imported import_model(const ImportOptions& options, const std::string& folder) {
                          ? expanded_by_xacro(options.file, options.arguments)
                          : read_file(options.file);
   auto source = std::make_shared<SourceText>(options.file, std::move(text));
+  if (!options.keyframe.empty() && !options.file.ends_with(".xml")) {
+    Diagnostics diagnostics(*source);
+    diagnostics.add({options.file, 0, 0}, "import.keyframe",
+                    "is given, and only an MJCF has keyframes", "Leave it out.");
+    diagnostics.throw_if_any();
+  }
   if (options.file.ends_with(".feb")) return import_feb(std::move(source), options, folder);
   if (is_sdf(options.file)) return import_sdf(std::move(source), options, folder);
   return options.file.ends_with(".xml") ? import_mjcf(std::move(source), options, folder)

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/mjcf.hpp>
 
-#include <cmath>
 #include <filesystem>
-#include <map>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/io/importers/mjcf_actuators.hpp>
 #include <polhode/io/importers/mjcf_bodies.hpp>
+#include <polhode/io/importers/mjcf_keyframe.hpp>
+#include <polhode/io/importers/mjcf_sensors.hpp>
+#include <polhode/io/importers/mjcf_tendons.hpp>
 #include <polhode/io/importers/write_robot.hpp>
 
 namespace polhode::io {
@@ -16,7 +18,7 @@ namespace {
 
 using Element = XmlFile::Element;
 
-/// Reader of options, equalities, tendons and actuators.
+/// Reader of options and equalities, and of all others in order.
 class MjcfReader {
  public:
   MjcfReader(XmlFile& xml, const ImportOptions& options, std::vector<ImportNote>& notes)
@@ -34,15 +36,20 @@ class MjcfReader {
     bodies.read();
     if (robot_.links.size() < 2)
       xml_.fault(xml_.root(), "the model has no body", "Add <body> to <worldbody>.");
-    for (const Element* e : file_.sections("tendon")) read_tendons(*e);
-    for (const Element* e : file_.sections("equality")) read_equality(*e, bodies);
-    for (const Element* e : file_.sections("actuator")) read_actuators(*e);
+    const std::vector<double> controls =
+        read_keyframe(file_, options_, actuators_of(file_).size(), robot_);
+    MjcfTendons tendons(file_, refusals_, bodies, options_, robot_);
+    tendons.read();
+    for (const Element* e : file_.sections("equality")) read_equality(*e, bodies, tendons.sums());
+    read_actuators(file_, refusals_, bodies, options_, controls, tendons, robot_);
+    tendons.finish();
+    read_sensors(file_, bodies, robot_);
     for (const Element* e : file_.sections("deformable")) {
       xml_.skip(*e);
       refusals_.add(*e, "<deformable> is not read", "Leave it out.");
     }
-    file_.ignored.skip(xml_.root(), {"asset", "contact", "sensor", "keyframe", "visual", "size",
-                                     "statistic", "custom", "extension"});
+    file_.ignored.skip(xml_.root(),
+                       {"asset", "contact", "visual", "size", "statistic", "custom", "extension"});
     file_.ignored.add_unread();
     return std::move(robot_);
   }
@@ -66,29 +73,12 @@ class MjcfReader {
     if (weightless) robot_.gravity.setZero();
   }
 
-  [[nodiscard]] const RobotJoint* find_joint(const std::string& name) const {
-    for (const RobotJoint& joint : robot_.joints)
-      if (joint.name == name) return &joint;
-    return nullptr;
-  }
-
-  /// Joint of a name, with one coordinate; null after an error.
   const RobotJoint* single_joint(const Element& e, const std::string& name) {
-    const RobotJoint* joint = find_joint(name);
-    if (joint == nullptr) {
-      std::vector<std::string> names;
-      for (const RobotJoint& j : robot_.joints) names.push_back(j.name);
-      xml_.fault(e, format("there is no joint {}", quote(name)),
-                 did_you_mean(name, names) + "Joints: " + name_list(names, 12) + ".");
-    } else if (!joint->is_single()) {
-      xml_.fault(e, format("{} does not have one coordinate", quote(name)),
-                 "Name a hinge or slide.");
-      joint = nullptr;
-    }
-    return joint;
+    return io::single_joint(xml_, robot_, e, name);
   }
 
-  void read_equality(const Element& section, const MjcfBodies& bodies) {
+  void read_equality(const Element& section, const MjcfBodies& bodies,
+                     const MjcfTendons::Sums& sums) {
     for (const Element* e = section.FirstChildElement(); e != nullptr;
          e = e->NextSiblingElement()) {
       const std::string kind = e->Name();
@@ -102,7 +92,7 @@ class MjcfReader {
       } else if (kind == "joint") {
         read_joints(tag);
       } else if (kind == "tendon") {
-        read_tendon_row(tag, name);
+        read_tendon_row(tag, name, sums);
       } else if (kind == "connect" || kind == "weld") {
         read_loop(tag, name, kind, bodies);
       } else {
@@ -143,11 +133,11 @@ class MjcfReader {
   }
 
   /// A fixed tendon whose length, a sum of coordinates, remains that of the configuration.
-  void read_tendon_row(const MjcfTag& tag, const std::string& name) {
+  void read_tendon_row(const MjcfTag& tag, const std::string& name, const MjcfTendons::Sums& sums) {
     const std::string tendon = xml_.required_text(tag.e, "tendon1");
     const std::vector<double> c = tag.numbers("polycoef", 1, 5);
-    const auto found = fixed_tendons_.find(tendon);
-    if (found == fixed_tendons_.end() || xml_.text(tag.e, "tendon2")) {
+    const auto found = sums.find(tendon);
+    if (found == sums.end() || xml_.text(tag.e, "tendon2")) {
       refusals_.add(
           tag.e, format("the length of the tendon {} is not a sum of coordinates", quote(tendon)),
           "Only one fixed tendon can be held.");
@@ -224,110 +214,11 @@ class MjcfReader {
     robot_.loops.push_back(std::move(loop));
   }
 
-  void read_tendons(const Element& section) {
-    for (const Element* e = section.FirstChildElement(); e != nullptr;
-         e = e->NextSiblingElement()) {
-      static_cast<void>(xml_.children(section, e->Name()));
-      const MjcfTag tag{file_, *e, {"tendon"}, ""};
-      const std::string name = tag.text("name", "");
-      if (std::string_view(e->Name()) == "fixed")
-        for (const Element* joint : xml_.children(*e, "joint"))
-          fixed_tendons_[name].emplace_back(xml_.text(*joint, "joint").value_or(""),
-                                            xml_.number(*joint, "coef").value_or(0.0));
-      const bool limits = options_.limits && !tag.numbers("range", 2, 2).empty() &&
-                          tag.boolean("limited", file_.compiler.auto_limits);
-      const bool friction = options_.friction && tag.number("frictionloss", 0.0) != 0.0;
-      const bool acts = limits || friction;
-      bool pulls = false;
-      for (const char* attribute : {"stiffness", "damping", "armature"})
-        for (const double value : tag.numbers(attribute, 1, 8)) pulls = pulls || value != 0.0;
-      xml_.skip(*e);
-      if (acts || pulls)
-        refusals_.add(
-            *e,
-            format("the tendon {} has {}", quote(name),
-                   pulls ? "a stiffness, damping or armature" : "limits or friction"),
-            pulls ? "Add a cable or spring of your own." : "Import without limits and friction.");
-      else
-        file_.ignored.add(*e, "a tendon without stiffness, damping and limits", "exerts no force");
-    }
-  }
-
-  void read_actuators(const Element& section) {
-    static const std::vector<std::string> kinds{"general",  "motor",       "position", "velocity",
-                                                "damper",   "intvelocity", "cylinder", "muscle",
-                                                "adhesion", "plugin"};
-    for (const Element* e = section.FirstChildElement(); e != nullptr;
-         e = e->NextSiblingElement()) {
-      static_cast<void>(xml_.children(section, e->Name()));
-      if (options_.actuators) read_actuator({file_, *e, kinds, ""});
-      xml_.skip(*e);
-    }
-  }
-
-  void read_actuator(const MjcfTag& tag) {
-    const std::string kind = tag.e.Name();
-    RobotActuator actuator;
-    actuator.at = &tag.e;
-    actuator.joint = xml_.text(tag.e, "joint").value_or("");
-    actuator.name = tag.text("name", actuator.joint + "_" + kind);
-    const auto refuse = [&](const std::string& what) {
-      refusals_.add(tag.e, format("the actuator {} {}", quote(actuator.name), what),
-                    "Import without actuators.");
-    };
-    if (actuator.joint.empty()) return refuse("does not act on a joint");
-    const RobotJoint* joint = single_joint(tag.e, actuator.joint);
-    if (joint == nullptr) return;
-    if (actuator.name == actuator.joint) actuator.name += "_motor";
-    const std::vector<double> gears = tag.numbers("gear", 1, 6);
-    const double gear = gears.empty() ? 1.0 : gears[0];
-    if (tag.number("timeconst", 0.0) != 0.0 || tag.text("dyntype", "none") != "none")
-      return refuse("has dynamics of its own");
-    const double squared = gear * gear;
-    if (kind == "position") {
-      actuator.kind = RobotActuator::Kind::place;
-      actuator.stiffness = squared * tag.number("kp", 1.0);
-      actuator.damping = squared * tag.number("kv", 0.0);
-      if (tag.number("dampratio", 0.0) != 0.0) return refuse("has a damping ratio");
-    } else if (kind == "velocity") {
-      actuator.kind = RobotActuator::Kind::velocity;
-      actuator.damping = squared * tag.number("kv", 1.0);
-    } else if (kind == "general") {
-      const std::vector<double> bias = tag.numbers("biasprm", 1, 10);
-      const std::string type = tag.text("biastype", "none");
-      if (tag.text("gaintype", "fixed") != "fixed" || (type != "none" && type != "affine"))
-        return refuse("has a gain or bias that is not affine");
-      const auto entry = [&](std::size_t k) {
-        return type == "none" || k >= bias.size() ? 0.0 : bias[k];
-      };
-      if (entry(0) != 0.0 || entry(1) > 0.0 || entry(2) > 0.0)
-        return refuse("has a bias that is no spring and damper");
-      actuator.stiffness = -squared * entry(1);
-      actuator.damping = -squared * entry(2);
-      if (actuator.stiffness > 0.0 || actuator.damping > 0.0)
-        actuator.kind =
-            actuator.stiffness > 0.0 ? RobotActuator::Kind::place : RobotActuator::Kind::velocity;
-    } else if (kind != "motor") {
-      return refuse(format("is a {}", kind));
-    }
-    const std::vector<double> range = tag.numbers("forcerange", 2, 2);
-    if (!range.empty() && tag.boolean("forcelimited", file_.compiler.auto_limits) &&
-        actuator.kind != RobotActuator::Kind::effort) {
-      if (range[0] == -range[1] && range[1] > 0.0)
-        actuator.most = std::abs(gear) * range[1];
-      else
-        file_.ignored.add(tag.e, "'forcerange' that is not symmetric", "limits nothing");
-    }
-    robot_.actuators.push_back(std::move(actuator));
-  }
-
   XmlFile& xml_;
   const ImportOptions& options_;
   MjcfFile file_;
   MjcfRefusals refusals_;
   Robot robot_;
-  /// Joints and their factors.
-  std::map<std::string, std::vector<std::pair<std::string, double>>> fixed_tendons_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/io/importers/mjcf_inertia.hpp>
 
 namespace polhode::io {
 
@@ -36,10 +37,34 @@ void MjcfBodies::read() {
                  false);
   double sum = 0.0;
   for (const RobotLink& link : robot_.links) sum += link.mass.mass;
-  if (file_.compiler.total_mass <= 0.0 || sum == 0.0) return;
-  for (RobotLink& link : robot_.links) {
-    link.mass.mass *= file_.compiler.total_mass / sum;
-    link.mass.inertia *= file_.compiler.total_mass / sum;
+  if (file_.compiler.total_mass > 0.0 && sum > 0.0)
+    for (RobotLink& link : robot_.links) {
+      link.mass.mass *= file_.compiler.total_mass / sum;
+      link.mass.inertia *= file_.compiler.total_mass / sum;
+    }
+  tune();
+}
+
+/// Springs and dampers by the inertia of their joints in the model's configuration, as MuJoCo's
+/// compiler chooses them.
+void MjcfBodies::tune() {
+  if (tuned_.empty()) return;
+  const MjcfInertia inertia(robot_, frames_);
+  for (const Tuned& t : tuned_) {
+    RobotJoint& joint = robot_.joints[t.joint];
+    const double J = inertia.is_there() ? inertia.effective(t.joint) : 0.0;
+    if (!(J > 0.0)) {
+      refusals_.add(
+          *t.at,
+          format("the 'springdamper' of {} {}", quote(joint.name),
+                 inertia.is_there() ? "acts on a tree that has no inertia at one of its joints"
+                                    : format("stands in a model with more than {} joint velocities",
+                                             MjcfInertia::kMost)),
+          "Give stiffness and damping.");
+      continue;
+    }
+    joint.stiffness = J / (t.time * t.time * t.ratio * t.ratio);
+    joint.damping = 2.0 * J / t.time;
   }
 }
 
@@ -54,6 +79,10 @@ void MjcfBodies::read_content(const Element& e, const Place& place,
       const MjcfGeom geom =
           geoms_.read({file_, *inner, {"geom"}, place.child_class}, place.frame, massive);
       if (geom.mass) parts.push_back(*geom.mass);
+      if (const auto own = xml.text(*inner, "name"); own && geom.shape)
+        if (const std::string& kind = geom.shape->kind; kind == "sphere" || kind == "cylinder")
+          wraps_[*own] = {place.link, geom.shape->pose, kind == "sphere",
+                          0.5 * geom.shape->sizes[0]};
       RobotLink& link = robot_.links[static_cast<std::size_t>(place.body)];
       const bool plane = geom.shape && geom.shape->kind == "plane";
       if (plane && place.link != "world") {
@@ -194,9 +223,9 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
 }
 
 void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
-  file_.ignored.attributes(tag.e, {"group", "user", "solreflimit", "solimplimit", "solreffriction",
-                                   "solimpfriction", "margin", "actuatorgravcomp", "align",
-                                   "springdamper", "actuatorfrcrange", "actuatorfrclimited"});
+  file_.ignored.attributes(
+      tag.e, {"group", "user", "solreflimit", "solimplimit", "solreffriction", "solimpfriction",
+              "margin", "actuatorgravcomp", "align", "actuatorfrcrange", "actuatorfrclimited"});
   if (std::string_view(tag.e.Name()) == "freejoint") {
     joint.type = "floating";
     return;
@@ -212,9 +241,16 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
     return;
   }
   joint.type = found->second;
-  if (tag.numbers("springdamper", 2, 2).size() == 2)
-    refusals_.add(tag.e, format("the joint {} has a 'springdamper'", quote(joint.name)),
-                  "Give stiffness and damping.");
+  if (const auto tuned = tag.numbers("springdamper", 2, 2);
+      tuned.size() == 2 && tuned[0] > 0.0 && tuned[1] > 0.0) {
+    if (joint.is_single())
+      tuned_.push_back({&tag.e, robot_.joints.size(), tuned[0], tuned[1]});
+    else
+      refusals_.add(
+          tag.e,
+          format("the joint {} has a 'springdamper', but is no hinge or slide", quote(joint.name)),
+          "Add a bushing, whose moment is the same at small angles.");
+  }
   const auto effort = [&](const char* attribute) {
     const std::vector<double> list = tag.numbers(attribute, 1, 8);
     for (std::size_t k = 1; k < list.size(); ++k)
@@ -279,18 +315,33 @@ void MjcfBodies::read_limits(const MjcfTag& tag, RobotJoint& joint) {
 }
 
 void MjcfBodies::read_ball(const MjcfTag& tag, RobotJoint& joint) {
-  const auto refuse = [&](bool is, const char* what) {
-    if (is)
-      refusals_.add(tag.e, format("the ball joint {} has {}", quote(joint.name), what),
-                    "Use hinges one after the other.");
+  const auto refuse = [&](bool is, const char* what,
+                          const char* hint = "Use hinges one after the other.") {
+    if (is) refusals_.add(tag.e, format("the ball joint {} has {}", quote(joint.name), what), hint);
   };
-  refuse(joint.stiffness != 0.0, "a stiffness");
+  refuse(joint.stiffness != 0.0, "a stiffness",
+         "Add a bushing, whose moment is the same at small angles.");
   refuse(joint.armature != 0.0, "an armature");
   refuse(joint.friction != 0.0 && options_.friction, "a friction loss");
   refuse(options_.limits && !tag.numbers("range", 2, 2).empty() &&
              tag.boolean("limited", file_.compiler.auto_limits),
          "a limit");
   joint.stiffness = joint.armature = joint.friction = 0.0;
+}
+
+const RobotJoint* single_joint(XmlFile& xml, const Robot& robot, const XmlFile::Element& at,
+                               const std::string& name) {
+  std::vector<std::string> names;
+  for (const RobotJoint& joint : robot.joints) {
+    names.push_back(joint.name);
+    if (joint.name != name) continue;
+    if (joint.is_single()) return &joint;
+    xml.fault(at, format("{} does not have one coordinate", quote(name)), "Name a hinge or slide.");
+    return nullptr;
+  }
+  xml.fault(at, format("there is no joint {}", quote(name)),
+            did_you_mean(name, names) + "Joints: " + name_list(names, 12) + ".");
+  return nullptr;
 }
 
 }  // namespace polhode::io

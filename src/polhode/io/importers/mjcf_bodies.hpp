@@ -41,6 +41,14 @@ class MjcfBodies {
     Pose frame;
   };
   [[nodiscard]] const std::map<std::string, Site>& sites() const { return sites_; }
+  /// Geoms that a tendon can run around.
+  struct Wrap {
+    std::string link;
+    Pose frame;
+    bool sphere;    ///< Otherwise a cylinder along z.
+    double radius;  ///< [m]
+  };
+  [[nodiscard]] const std::map<std::string, Wrap>& wraps() const { return wraps_; }
 
  private:
   using Element = XmlFile::Element;
@@ -59,6 +67,7 @@ class MjcfBodies {
   void read_limits(const MjcfTag& tag, RobotJoint& joint);
   void read_ball(const MjcfTag& tag, RobotJoint& joint);
   [[nodiscard]] geometry::MassProperties inertial(const Element& e);
+  void tune();
   void bound(geometry::MassProperties& mass) const;
 
   MjcfFile& file_;
@@ -68,7 +77,19 @@ class MjcfBodies {
   Robot& robot_;
   std::map<std::string, Pose> frames_;
   std::map<std::string, Site> sites_;
+  std::map<std::string, Wrap> wraps_;
   std::set<std::string> joint_names_;
+  /// A joint whose spring and damper follow from a time constant and a damping ratio.
+  struct Tuned {
+    const Element* at;
+    std::size_t joint;
+    double time, ratio;  ///< [s], [-]
+  };
+  std::vector<Tuned> tuned_;
 };
+
+/// Joint of a name, with one coordinate; null after an error.
+const RobotJoint* single_joint(XmlFile& xml, const Robot& robot, const XmlFile::Element& at,
+                               const std::string& name);
 
 }  // namespace polhode::io

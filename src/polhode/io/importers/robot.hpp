@@ -58,13 +58,19 @@ struct RobotJoint {
   std::string type;
   std::string parent, child;
   const XmlFile::Element* at = nullptr;
-  Pose origin, on_child;       ///< Its frame in the coordinates of the parent, and of the child.
-  Vec3 axis = Vec3::UnitX();   ///< Unit vector in the joint's frame; on the parent.
-  Vec3 axis2 = Vec3::UnitY();  ///< Of a universal joint: axis on the child, normal to the other.
-  double pitch = 0.0;          ///< Of a screw: displacement per turn [m].
-  bool closes = false;         ///< Closes a loop: its coordinate follows from those of the tree.
-  bool in_loop = false;        ///< One of a loop that such a joint closes, or that joint.
-  double zero = 0.0;           ///< Also its start, unless another one is given [rad, m].
+  Pose origin, on_child;        ///< Its frame in the coordinates of the parent, and of the child.
+  Vec3 axis = Vec3::UnitX();    ///< Unit vector in the joint's frame; on the parent.
+  Vec3 axis2 = Vec3::UnitY();   ///< Of a universal joint: axis on the child, normal to the other.
+  double pitch = 0.0;           ///< Of a screw: displacement per turn [m].
+  bool closes = false;          ///< Closes a loop: its coordinate follows from those of the tree.
+  bool in_loop = false;         ///< One of a loop that such a joint closes, or that joint.
+  double zero = 0.0;            ///< Also its start, unless another one is given [rad, m].
+  std::optional<double> start;  ///< That the file gives, of a joint with one coordinate [rad, m].
+  Pose start_motion;            ///< Likewise of spherical and floating ones: child in parent.
+  /// Velocity at the start: of the coordinate; of a spherical joint the angular velocity in the
+  /// child's axes; of a floating one the velocity of the child's origin in world axes, and then the
+  /// angular velocity in the child's.
+  std::vector<double> rate;
   std::optional<double> lower, upper;
   double damping = 0.0, friction = 0.0, stiffness = 0.0;
   double rest = 0.0;      ///< Coordinate without force of the spring [rad, m].
@@ -97,7 +103,7 @@ struct RobotRow {
   double sum = 0.0;             ///< [rad, m]
 };
 
-/// A motor or servo of a joint with one coordinate, with zero as its set point.
+/// A motor or servo of a joint with one coordinate.
 struct RobotActuator {
   enum class Kind : unsigned char {
     effort,   ///< Moment or force.
@@ -108,7 +114,47 @@ struct RobotActuator {
   const XmlFile::Element* at = nullptr;
   Kind kind = Kind::effort;
   double stiffness = 0.0, damping = 0.0;  ///< Of a servo.
+  double target = 0.0;                    ///< Effort, coordinate or rate.
   std::optional<double> most;             ///< Largest effort of a servo [N m, N].
+};
+
+/// A point of a link, or an obstacle on it.
+struct RobotPoint {
+  std::string link;
+  Vec3 p = Vec3::Zero();  ///< In the link's coordinates [m].
+};
+
+/// A line over points of links, around obstacles, with one tension.
+struct RobotCable {
+  struct Obstacle {
+    std::string name;
+    std::string type;  ///< sphere, cylinder.
+    RobotPoint at;
+    Vec3 axis = Vec3::UnitZ();  ///< Of a cylinder, in the link's axes.
+    double radius = 0.0;        ///< [m]
+    std::optional<Vec3> side;   ///< Direction to where the line passes, in the link's axes.
+    std::size_t after = 0;      ///< Number of the point before it, from 0.
+  };
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  std::vector<RobotPoint> through;
+  std::vector<Obstacle> around;
+  double stiffness = 0.0, damping = 0.0;  ///< [N/m, N s/m]
+  double shortest = 0.0, longest = 0.0;   ///< Lengths between which there is no force [m].
+  std::optional<double> tension;          ///< Of actuators [N].
+};
+
+/// Something to be recorded.
+struct RobotProbe {
+  enum class Kind : unsigned char { body, joint, load, cable };
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  Kind kind = Kind::body;
+  std::string of;         ///< Joint, actuator or cable of the file.
+  RobotPoint point;       ///< Of a body.
+  std::string rotation;   ///< Likewise; "": none.
+  bool angular = false;   ///< Likewise.
+  std::string seen_from;  ///< Likewise: a link; "": the world.
 };
 
 /// A robot as its file describes it, checked one by one but not as a tree.
@@ -118,6 +164,8 @@ struct Robot {
   Vec3 gravity{0.0, 0.0, -9.81};    ///< [m/s²]
   std::vector<RobotRow> rows;
   std::vector<RobotActuator> actuators;
+  std::vector<RobotCable> cables;
+  std::vector<RobotProbe> probes;
   std::vector<RobotLink> links;
   std::vector<RobotJoint> joints;
   std::vector<RobotLoop> loops;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/robot_loads.hpp>
 
+#include <cmath>
+#include <numbers>
+
 namespace polhode::io {
 
 void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
@@ -27,6 +30,20 @@ void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std
   make.put(loads, name + "_armature", std::move(inerter));
 }
 
+void put_friction(const NodeBuilder& make, const RobotJoint& joint, SourceNode& node) {
+  SourceNode friction = make.map();
+  if (joint.type == "screw") {
+    // The cylindrical joint slips where the resultant of the axial force and of the moment over a
+    // radius, here 1 m, reaches a force: along the thread they do as much work as the moment.
+    const double lead = joint.pitch / (2.0 * std::numbers::pi);
+    make.put(friction, "force", make.number(joint.friction / std::hypot(1.0, lead)));
+    make.put(friction, "radius", make.number(1.0));
+  } else {
+    make.put(friction, joint.turns() ? "moment" : "force", make.number(joint.friction));
+  }
+  make.put(node, "friction", std::move(friction));
+}
+
 void put_ball_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
                     const SourceNode& node, SourceNode& loads) {
   if (joint.damping == 0.0) return;
@@ -51,7 +68,7 @@ void put_free_damping(const NodeBuilder& make, const RobotJoint& joint, const st
 }
 
 SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
-                         const RobotJoint& joint, const std::string& name) {
+                         const RobotJoint& joint, const std::string& name, double turns) {
   const bool angle = joint.turns(), servo = actuator.kind != RobotActuator::Kind::effort;
   SourceNode load = make.map();
   make.put(load, "type",
@@ -63,7 +80,8 @@ SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
                        : servo ? angle ? "angle" : "displacement"
                        : angle ? "moment"
                                : "force";
-  make.put(load, target, make.number(0.0));
+  const bool place = actuator.kind == RobotActuator::Kind::place;
+  make.put(load, target, make.number(actuator.target - (place ? turns : 0.0)));
   if (actuator.stiffness != 0.0) make.put(load, "stiffness", make.number(actuator.stiffness));
   if (actuator.damping != 0.0) make.put(load, "damping", make.number(actuator.damping));
   if (servo && actuator.most)

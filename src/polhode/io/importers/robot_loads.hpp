@@ -14,6 +14,9 @@ namespace polhode::io {
 void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
                      double turns, SourceNode& loads);
 
+/// Adds the dry friction of a joint with one coordinate. @param node  The joint in the model.
+void put_friction(const NodeBuilder& make, const RobotJoint& joint, SourceNode& node);
+
 /// Adds the damper of a ball joint, which resists the relative angular velocity in all directions.
 /// @param node  The joint in the model.
 void put_ball_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
@@ -27,8 +30,10 @@ void put_free_damping(const NodeBuilder& make, const RobotJoint& joint, const st
                       SourceNode& loads);
 
 /// The motor or servo of a joint with one coordinate.
-/// @param name  Of the joint in the model.
+/// @param name   Of the joint in the model.
+/// @param turns  Angle that the model does not count [rad].
 [[nodiscard]] SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
-                                       const RobotJoint& joint, const std::string& name);
+                                       const RobotJoint& joint, const std::string& name,
+                                       double turns);
 
 }  // namespace polhode::io

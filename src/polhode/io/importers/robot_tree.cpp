@@ -36,6 +36,7 @@ class Arranger {
     if (!diagnostics_.empty()) return false;
     place();
     form_bodies(robot_, options_, xml_, diagnostics_, notes_, tree_);
+    if (diagnostics_.empty()) set_moving();
     return diagnostics_.empty();
   }
 
@@ -146,7 +147,7 @@ class Arranger {
                                 : joint.type == "planar"   ? 3
                                 : joint.type == "floating" ? 6
                                                            : 0;
-      tree_.start[j].assign(count, joint.zero);
+      tree_.start[j].assign(count, joint.start.value_or(joint.zero));
       const auto given = options_.start.find(joint.name);
       if (given == options_.start.end()) {
         if (count == 1 && options_.limits && !joint.in_loop) clamp(joint, tree_.start[j][0]);
@@ -248,7 +249,10 @@ class Arranger {
     const RobotJoint& joint = this->joint(j);
     const std::vector<double>& q = at(tree_.start, j);
     Pose motion;
-    if (joint.turns()) {
+    if (joint.type == "spherical" ||
+        (joint.type == "floating" && !options_.start.contains(joint.name))) {
+      motion = joint.start_motion;
+    } else if (joint.turns()) {
       motion.R = Eigen::AngleAxisd(q[0] - joint.zero, joint.axis).toRotationMatrix();
       if (joint.type == "screw")
         motion.p = joint.pitch / (2.0 * std::numbers::pi) * (q[0] - joint.zero) * joint.axis;
@@ -264,8 +268,7 @@ class Arranger {
                   Eigen::AngleAxisd(q[3], Vec3::UnitX()))
                      .toRotationMatrix();
     }
-    const bool moved = std::any_of(q.begin(), q.end(), [&](double x) { return x != joint.zero; });
-    const Pose frame = moved ? joint.origin * motion : joint.origin;
+    const Pose frame = motion.is_identity() ? joint.origin : joint.origin * motion;
     return joint.on_child.is_identity() ? frame : frame * joint.on_child.inverse();
   }
 
@@ -274,6 +277,53 @@ class Arranger {
     for (const int i : tree_.order)
       if (const int j = at(tree_.parent_joint, i); j >= 0)
         at(tree_.world, i) = at(tree_.world, at(tree_.parent, j)) * across(j);
+  }
+
+  /// Rate of a joint's coordinate at the start; of one that follows another one as that of it.
+  double rate_of(int j) {
+    double factor = 1.0;
+    for (; joint(j).mimic; j = tree_.joint_index.at(joint(j).mimic->joint))
+      factor *= joint(j).mimic->multiplier;
+    return joint(j).rate.empty() || at(tree_.held, j) ? 0.0 : factor * joint(j).rate[0];
+  }
+
+  /// Adds the velocity of a joint at the start to that with which its child moves with its parent.
+  void add_rate(int j, int child) {
+    const RobotJoint& joint = this->joint(j);
+    const Pose frame = at(tree_.world, child) * joint.on_child;
+    Vec3 spin = Vec3::Zero(), slide = Vec3::Zero();
+    if (joint.is_single()) {
+      const Vec3 way = rate_of(j) * (frame.R * joint.axis);
+      if (joint.turns()) spin = way;
+      if (joint.type == "prismatic") slide = way;
+      if (joint.type == "screw") slide = joint.pitch / (2.0 * std::numbers::pi) * way;
+    } else if (!joint.rate.empty()) {
+      const Eigen::Map<const Vec3> last(joint.rate.data() + joint.rate.size() - 3);
+      spin = at(tree_.world, child).R * last;
+      if (joint.type == "floating") slide = Eigen::Map<const Vec3>(joint.rate.data());
+    }
+    at(tree_.spin, child) += spin;
+    at(tree_.velocity, child) += slide + spin.cross(at(tree_.world, child).p - frame.p);
+  }
+
+  /// Velocities of all links at the start.
+  void set_moving() {
+    const auto moves = [](const RobotJoint& joint) {
+      return std::any_of(joint.rate.begin(), joint.rate.end(), [](double v) { return v != 0.0; });
+    };
+    if (std::none_of(robot_.joints.begin(), robot_.joints.end(), moves)) return;
+    tree_.velocity.assign(robot_.links.size(), Vec3::Zero());
+    tree_.spin.assign(robot_.links.size(), Vec3::Zero());
+    for (const int i : tree_.order) {
+      const int j = at(tree_.parent_joint, i);
+      if (j < 0) continue;
+      const int above = at(tree_.parent, j);
+      at(tree_.spin, i) = at(tree_.spin, above);
+      at(tree_.velocity, i) =
+          at(tree_.velocity, above) +
+          at(tree_.spin, above).cross(at(tree_.world, i).p - at(tree_.world, above).p);
+      if (!at(tree_.held, j)) add_rate(j, i);
+    }
   }
 
   const Robot& robot_;
@@ -285,6 +335,13 @@ class Arranger {
 };
 
 }  // namespace
+
+Pose RobotTree::in_body(int link) const {
+  const auto own = static_cast<std::size_t>(body[static_cast<std::size_t>(link)]);
+  return static_cast<int>(own) == link
+             ? Pose{}
+             : world[own].inverse() * world[static_cast<std::size_t>(link)];
+}
 
 bool arrange(const Robot& robot, const ImportOptions& options, XmlFile& xml,
              Diagnostics& diagnostics, std::vector<ImportNote>& notes, RobotTree& tree) {

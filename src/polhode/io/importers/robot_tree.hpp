@@ -18,11 +18,17 @@ struct RobotTree {
   std::unordered_map<std::string, int> link_index, joint_index;
   std::vector<std::vector<double>> start;  ///< Coordinates of each joint [rad, m].
   std::vector<Pose> world;                 ///< Frame of each link at the start.
-  std::vector<bool> held;                  ///< Joints that do not move although their type does.
-  std::vector<bool> grounded;              ///< Links that never move.
-  std::vector<int> body;  ///< Link whose body each link belongs to; its own: it is one.
+  /// Velocity of each link's origin and its angular velocity at the start, in world axes; empty if
+  /// the file gives none.
+  std::vector<Vec3> velocity, spin;
+  std::vector<bool> held;      ///< Joints that do not move although their type does.
+  std::vector<bool> grounded;  ///< Links that never move.
+  std::vector<int> body;       ///< Link whose body each link belongs to; its own: it is one.
   /// Mass properties of each link that is a body, in its axes.
   std::vector<geometry::MassProperties> mass;
+
+  /// Frame of a link in its body's coordinates.
+  [[nodiscard]] Pose in_body(int link) const;
 };
 
 /// Arranges a robot. Errors go to the file's diagnostics, and then the tree is incomplete.

@@ -10,6 +10,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/importers/node_builder.hpp>
+#include <polhode/io/importers/robot_cables.hpp>
 #include <polhode/io/importers/robot_loads.hpp>
 #include <polhode/io/importers/robot_meshes.hpp>
 #include <polhode/io/importers/robot_tree.hpp>
@@ -56,6 +57,11 @@ class ModelWriter {
     for (std::size_t i = 0; i < robot_.links.size(); ++i)
       if (robot_.links[i].weightless) write_weight(static_cast<int>(i), loads);
     if (options_.actuators) write_actuators(loads);
+    CableWriter lines(robot_, tree_, link_name_, xml_, out_.notes);
+    SourceNode cables = make.map();
+    lines.write(cables, loads);
+    SourceNode probes = make.map();
+    lines.write_probes({joint_name_, actuator_name_}, joints, probes);
     out_.root = make.map();
     make.put(out_.root, "format", make.text("1"));
     if (!robot_.name.empty()) {
@@ -67,6 +73,11 @@ class ModelWriter {
     make.put(out_.root, "bodies", std::move(bodies));
     if (!joints.keys.empty()) make.put(out_.root, "joints", std::move(joints));
     if (!loads.keys.empty()) make.put(out_.root, "loads", std::move(loads));
+    if (!cables.keys.empty()) make.put(out_.root, "cables", std::move(cables));
+    if (probes.keys.empty()) return;
+    SourceNode output = make.map();
+    make.put(output, "probes", std::move(probes));
+    make.put(out_.root, "output", std::move(output));
   }
 
  private:
@@ -102,10 +113,7 @@ class ModelWriter {
   }
 
   /// Frame of a link in its body's coordinates.
-  [[nodiscard]] Pose in_body(int link) const {
-    const int body = at(tree_.body, link);
-    return body == link ? Pose{} : at(tree_.world, body).inverse() * at(tree_.world, link);
-  }
+  [[nodiscard]] Pose in_body(int link) const { return tree_.in_body(link); }
 
   void write_body(int i, SourceNode& bodies) {
     const RobotLink& link = at(robot_.links, i);
@@ -122,6 +130,12 @@ class ModelWriter {
     make.put(body, "position", make.vector(world.p));
     if (!world.R.isIdentity(0.0))
       make.put(body, "orientation", make.orientation(Quat(world.R).normalized()));
+    if (!tree_.spin.empty() && !grounded) {
+      const Vec3& spin = at(tree_.spin, i);
+      const Vec3 velocity = at(tree_.velocity, i) + spin.cross(world.R * mass.com);
+      if (!velocity.isZero(0.0)) make.put(body, "velocity", make.vector(velocity));
+      if (!spin.isZero(0.0)) make.put(body, "angular_velocity", make.vector(spin));
+    }
     SourceNode shapes = make.list();
     if (options_.shapes != "none")
       for (const int k : tree_.order)
@@ -212,11 +226,7 @@ class ModelWriter {
                      make.direction(at(tree_.world, child).R * joint.on_child.R * joint.axis2)}));
     if (joint.is_single()) {
       put_limits(make, joint, at(tree_.start, j)[0], node);
-      if (joint.friction > 0.0 && options_.friction && !screw) {
-        SourceNode friction = make.map();
-        make.put(friction, joint.turns() ? "moment" : "force", make.number(joint.friction));
-        make.put(node, "friction", std::move(friction));
-      }
+      if (joint.friction > 0.0 && options_.friction) put_friction(make, joint, node);
       put_joint_loads(make, joint, name, turns_at_start(joint, at(tree_.start, j)[0]), loads);
       if (screw) {
         SourceNode thread = make.map();
@@ -372,9 +382,11 @@ class ModelWriter {
       const NodeBuilder make{xml_.line(*actuator.at)};
       std::string name = allowed_name(actuator.name);
       while (loads.find(name) != nullptr) name += "_actuator";
+      const RobotJoint& joint = at(robot_.joints, found->second);
+      actuator_name_[actuator.name] = name;
       make.put(loads, name,
-               actuator_load(make, actuator, at(robot_.joints, found->second),
-                             joint_name_.at(actuator.joint)));
+               actuator_load(make, actuator, joint, joint_name_.at(actuator.joint),
+                             turns_at_start(joint, at(tree_.start, found->second)[0])));
     }
   }
 
@@ -448,7 +460,7 @@ class ModelWriter {
   Imported& out_;
   RobotMeshes meshes_;
   std::vector<std::string> link_name_;
-  std::map<std::string, std::string> joint_name_;
+  std::map<std::string, std::string> joint_name_, actuator_name_;
   std::map<int, int> first_follower_;  ///< By leader that moves nothing.
 };
 

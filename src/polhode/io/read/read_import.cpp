@@ -73,6 +73,7 @@ ImportOptions read_options(ReadContext& context, const SourceNode& node,
   options.limits = section.boolean("limits").value_or(true);
   options.friction = section.boolean("friction").value_or(true);
   options.actuators = section.boolean("actuators").value_or(true);
+  if (const auto name = section.text("keyframe")) options.keyframe = *name;
   options.allow_partial = section.boolean("allow_partial").value_or(false);
   if (const auto paths = section.names("package_paths"))
     for (const std::string& path : *paths)

@@ -47,6 +47,12 @@ const FieldTable& import_fields() {
            .meaning = "Whether actuators are motors and servos, with zero as their set points; "
                       "URDF and SDFormat have none.",
            .standard = "true"},
+          {.name = "keyframe",
+           .kind = kText,
+           .meaning = "Keyframe of an MJCF at which the model starts: its name, or its number from "
+                      "0 if it has none; none: the start is the reference.",
+           .standard = "the first of the file",
+           .since = "0.2"},
           {.name = "allow_partial",
            .kind = kBoolean,
            .meaning = "Whether what cannot be represented may be left out, with a note.",

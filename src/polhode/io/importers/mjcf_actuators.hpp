@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <polhode/io/importers/mjcf_tendons.hpp>
+
+namespace polhode::io {
+
+/// Reads all <actuator> sections: motors and servos of joints and of tendons.
+/// @param controls  Of a keyframe, by actuator; empty: zero.
+void read_actuators(MjcfFile& file, MjcfRefusals& refusals, const MjcfBodies& bodies,
+                    const ImportOptions& options, const std::vector<double>& controls,
+                    MjcfTendons& tendons, Robot& robot);
+
+/// All actuators of a file.
+[[nodiscard]] std::vector<const XmlFile::Element*> actuators_of(MjcfFile& file);
+
+}  // namespace polhode::io

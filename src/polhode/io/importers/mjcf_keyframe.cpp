@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/importers/mjcf_keyframe.hpp>
+
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+
+namespace polhode::io {
+
+namespace {
+
+using Element = XmlFile::Element;
+
+/// Most numbers of a list.
+constexpr std::size_t kMostNumbers = 1'000'000;
+
+/// Numbers of a joint in a list of positions and in one of velocities.
+struct Freedoms {
+  std::size_t positions, velocities;
+};
+
+Freedoms freedoms_of(const RobotJoint& joint) {
+  if (joint.type == "floating") return {7, 6};
+  if (joint.type == "spherical") return {4, 3};
+  return joint.is_single() ? Freedoms{1, 1} : Freedoms{0, 0};
+}
+
+class KeyframeReader {
+ public:
+  KeyframeReader(MjcfFile& file, const Element& key, Robot& robot)
+      : xml_(file.xml), key_(key), robot_(robot) {
+    for (const RobotJoint& joint : robot.joints) {
+      whole_.positions += freedoms_of(joint).positions;
+      whole_.velocities += freedoms_of(joint).velocities;
+    }
+  }
+
+  std::vector<double> read(std::size_t actuators) {
+    const std::vector<double> q = list("qpos", "positions", whole_.positions);
+    const std::vector<double> v = list("qvel", "velocities", whole_.velocities);
+    std::size_t at_q = 0, at_v = 0;
+    for (RobotJoint& joint : robot_.joints) {
+      const Freedoms own = freedoms_of(joint);
+      if (!q.empty() && own.positions > 0) place(joint, &q[at_q]);
+      if (!v.empty()) joint.rate.assign(&v[at_v], &v[at_v] + own.velocities);
+      at_q += own.positions;
+      at_v += own.velocities;
+    }
+    return list("ctrl", "controls", actuators);
+  }
+
+ private:
+  /// A list with a number for each freedom; empty if it is missing, or after an error.
+  std::vector<double> list(const char* attribute, const char* what, std::size_t count) {
+    const auto given = xml_.numbers(key_, attribute, 0, kMostNumbers);
+    if (!given || given->empty()) return {};
+    if (given->size() == count) return *given;
+    xml_.fault(key_,
+               format("'{}' of <key> has {} numbers, but the model {} {}", attribute, given->size(),
+                      count, what),
+               "Give one for each, in the order of the joints and actuators in the file.");
+    return {};
+  }
+
+  void place(RobotJoint& joint, const double* q) {
+    if (joint.is_single()) {
+      joint.start = q[0];
+      return;
+    }
+    const bool free = joint.type == "floating";
+    if (free) q += 3;
+    const Quat turn(q[0], q[1], q[2], q[3]);
+    if (!(turn.norm() > 0.0)) {
+      xml_.fault(
+          key_,
+          format("the rotation of {} in 'qpos' is a quaternion of length 0", quote(joint.name)),
+          "Give four numbers that are not all zero.");
+      return;
+    }
+    joint.start_motion.R = turn.normalized().toRotationMatrix();
+    if (!free) return;
+    joint.start_motion.p = Vec3(q[-3], q[-2], q[-1]);
+    joint.start_motion = joint.origin.inverse() * joint.start_motion;
+  }
+
+  XmlFile& xml_;
+  const Element& key_;
+  Robot& robot_;
+  Freedoms whole_{0, 0};
+};
+
+}  // namespace
+
+std::vector<double> read_keyframe(MjcfFile& file, const ImportOptions& options,
+                                  std::size_t actuators, Robot& robot) {
+  std::vector<const Element*> keys;
+  for (const Element* section : file.sections("keyframe"))
+    for (const Element* key : file.xml.children(*section, "key")) keys.push_back(key);
+  const Element* chosen = nullptr;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::string name = file.xml.text(*keys[k], "name").value_or(format("{}", k));
+    names.push_back(name);
+    file.ignored.attributes(*keys[k], {"time"});
+    if (options.keyframe.empty() ? k == 0 : name == options.keyframe && chosen == nullptr)
+      chosen = keys[k];
+  }
+  const bool wanted = !options.keyframe.empty() && options.keyframe != "none";
+  if (wanted && chosen == nullptr)
+    file.xml.fault(file.xml.root(), format("there is no keyframe {}", quote(options.keyframe)),
+                   names.empty() ? "The file has none."
+                                 : did_you_mean(options.keyframe, names) +
+                                       "Keyframes: " + name_list(names, 12) + ", none.");
+  std::vector<double> controls;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (keys[k] != chosen) {
+      file.xml.skip(*keys[k]);
+      file.ignored.add(*keys[k], "a <key> other than that of the start", "is not read");
+      continue;
+    }
+    for (const char* attribute : {"mpos", "mquat", "act"})
+      if (file.xml.text(*chosen, attribute))
+        file.ignored.add(*chosen, format("'{}' of <key>", attribute),
+                         "moves nothing: mocap bodies are fixed, and there are no activations");
+    controls = KeyframeReader(file, *chosen, robot).read(actuators);
+    file.notes.push_back(
+        {ImportNote::Kind::approximated, file.xml.place(*chosen),
+         format("the model starts as the keyframe {} says; MuJoCo does so when it is told to",
+                quote(names[k]))});
+  }
+  return controls;
+}
+
+}  // namespace polhode::io
