@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from ._derivatives import Uncertainty
     from ._design import Minimum, minimize
     from ._equations import StepEquations, step_equations
+    from ._febio import write_febio_log
     from ._fit import Experiment, Fit, fit
     from ._frameworks import jax_function, torch_function
     from ._gradient import Gradient, gradient
@@ -45,6 +46,7 @@ _LATER = {
     "_derivatives": ["Uncertainty"],
     "_design": ["Minimum", "minimize"],
     "_equations": ["StepEquations", "step_equations"],
+    "_febio": ["write_febio_log"],
     "_fit": ["Experiment", "Fit", "fit"],
     "_frameworks": ["jax_function", "torch_function"],
     "_gradient": ["Gradient", "gradient"],
@@ -65,7 +67,7 @@ __all__ = [
     "ModelError", "Modes", "NotConverged", "NotReached", "Pose", "Result", "Simulation", "StateFunction", "StateSpace",
     "Step", "StepEquations", "Uncertainty", "__version__", "batch", "fit", "from_text", "gradient", "inverse_dynamics",
     "jax_function", "linearize", "load", "matrices", "minimize", "modes", "open", "rotations", "run", "spin_modes",
-    "step_equations", "sweep", "torch_function",
+    "step_equations", "sweep", "torch_function", "write_febio_log",
 ]
 
 

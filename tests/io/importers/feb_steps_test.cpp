@@ -65,6 +65,22 @@ TEST_F(FebSteps, ConnectorsHoldInTheirStepAlone) {
     EXPECT_NEAR(run(m, 2.0, step).body("bar").r.z(), -5.0, 1e-7) << step;
 }
 
+// A body that is pushed for a second, then held where it is, and then pushed again.
+TEST_F(FebSteps, BodiesAreHeldWhereTheStepFindsThem) {
+  const std::string force = format("{}", 2 * kMass);
+  const std::string text = two_bodies(
+      "", "",
+      tag("Step", lasting(1, push(force)) + lasting(0.5, tag("Rigid", fixed("bar", "111111"))) +
+                      lasting(1, push(force))));
+  for (const double step : kSteps) {
+    EXPECT_NEAR(run(read(text), 0.5, step).body("bar").v.x(), 1.0, 1e-9) << step;
+    const BodyMotion held = run(read(text), 1.5, step).body("bar");
+    EXPECT_NEAR(held.r.x(), 1.0, 1e-8) << step;
+    EXPECT_NEAR(held.v.norm(), 0.0, 1e-8) << step;
+    EXPECT_NEAR(run(read(text), 2.5, step).body("bar").r.x(), 2.0, 1e-7) << step;
+  }
+}
+
 // In its step a load has the part of its curve; v = integral of 1 + 4 t - t^2 from 1 to 2.
 TEST_F(FebSteps, CurvesAreCutToTheStep) {
   const auto weight = [](const std::string& attributes) {
@@ -101,7 +117,12 @@ TEST_F(FebSteps, SettingsOfStepsAreMerged) {
               HasSubstr("some steps are STATIC and others DYNAMIC"));
   EXPECT_THAT(fault(steps(lasting(1, ""), tag("step", ""))),
               HasSubstr("the step has no <Control>"));
-  EXPECT_THAT(fault(steps(lasting(1, ""), lasting(1, tag("Rigid", fixed("bar", "111111"))))),
+  EXPECT_THAT(fault(steps(lasting(1, ""), lasting(1, tag("Rigid", fixed("bar", "110000"))))),
+              HasSubstr("<rigid_bc> of one step of several is not read"));
+  EXPECT_THAT(fault(steps(lasting(1, ""),
+                          lasting(1, tag("Rigid", typed("rigid_bc", "rigid_displacement",
+                                                        tag("rb", "bar") + tag("dof", "Rx") +
+                                                            tag("value", "1")))))),
               HasSubstr("<rigid_bc> of one step of several is not read"));
   EXPECT_THAT(fault(steps(lasting(1, ""), lasting(1, tag("Boundary", tag("bc", ""))))),
               HasSubstr("<Boundary> of one step of several is not read"));

@@ -111,6 +111,24 @@ TEST_F(SdfJoints, AScrewFallsWithTheInertiaOfItsTurning) {
   }
 }
 
+// Without gravity a nut that turns at 5 rad/s is slowed by 0.3 N m and by the friction of its
+// thread, (J + m (p / 2 pi)^2) w' = -M, and stops after w / |w'|.
+TEST_F(SdfJoints, FrictionOfAScrewIsAMomentAlongTheThread) {
+  Model m =
+      read(link("nut") + joint("j", "screw", "world", "nut",
+                               axis("0 0 1", "<dynamics><friction>0.3</friction></dynamics>") +
+                                   "<screw_thread_pitch>0.5</screw_thread_pitch>"));
+  m.gravity.setZero();
+  const double lead = 0.5 / (2 * std::numbers::pi), J = 0.2 + 2.0 * lead * lead;
+  m.bodies.at(1).angular_velocity = Vec3(0, 0, 5);
+  m.bodies.at(1).velocity = Vec3(0, 0, 5 * lead);
+  for (const double step : kSteps) {
+    const Simulation s = run(m, step, 1.0);
+    EXPECT_NEAR(s.body("nut").omega().z(), 5.0 - 0.3 / J, 1e-3 + 10.0 * step) << step;
+    EXPECT_NEAR(s.body("nut").v.z(), lead * s.body("nut").omega().z(), 1e-9) << step;
+  }
+}
+
 // From rest, q = q_0 (1 - cos(w t)), w = sqrt(k / J); also where the joint counts from the child to
 // the world.
 TEST_F(SdfJoints, SpringsPullToTheirReference) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -29,6 +30,7 @@ class FebReader {
     if (const Element* module = file_.child(root, "Module")) read_module(*module);
     if (!read_feb_steps(model_)) return result;
     model_.curves.until = model_.duration;
+    model_.curves.dynamic = model_.dynamic;
     using In = FebIn;
     const auto each = [&](const char* name, In in, const auto& use) {
       model_.each_section(name, in, use);
@@ -53,6 +55,7 @@ class FebReader {
     model_.solids.write(result);
     if (!model_.joints.keys.empty()) make.put(result, "joints", std::move(model_.joints));
     if (!model_.loads.keys.empty()) make.put(result, "loads", std::move(model_.loads));
+    write_controllers(result);
     write_feb_steps(model_, result);
     write_feb_control(model_, std::move(probes), result);
     file_.ignored.add_unread();
@@ -83,6 +86,16 @@ class FebReader {
       file_.xml.fault(e, format("the module {} is not read", quote(type)),
                       "Models of solids and rigid bodies are.");
     file_.ignored.skip(e, {"units"});
+  }
+
+  void write_controllers(SourceNode& result) {
+    std::map<std::string, std::string> names;
+    std::vector<std::string> order;
+    for (const FebBody& body : model_.bodies) {
+      names.emplace(body.material, body.name);
+      order.push_back(body.name);
+    }
+    model_.curves.write_controllers(names, order, result);
   }
 
   void refuse_others() {

@@ -184,6 +184,8 @@ void FebCurves::read(const XmlFile::Element& section) {
     controller.at = e;
     if (type == "loadcurve") {
       read_curve(*e, controller);
+    } else if (type == "pid") {
+      read_pid(*e, controller);
     } else if (type == "math") {
       std::string unknown;
       controller.math = expression_of_feb(file_.text(*e, "math"), unknown);
@@ -195,7 +197,7 @@ void FebCurves::read(const XmlFile::Element& section) {
                      "Write it with t, pi, + - * / ^, sin, cos, tan, exp, ln, sqrt, abs and H.");
     } else {
       file_.refuse(*e, format("a load controller of type {} is not read", quote(type)),
-                   "Use a loadcurve or math, or add a controller to the model.");
+                   "Use a loadcurve, math or PID, or add a controller to the model.");
     }
   }
 }
@@ -266,6 +268,7 @@ SourceNode FebCurves::node(const FebValue& value, double factor) {
   }
   const Controller& controller = found->second;
   if (!controller.usable) return make.number(0.0);  // An error, or left out, already.
+  if (!controller.channel.empty()) return pid_node(make, value, factor * value.factor);
   if (controller.math.empty())
     return pieces_node(make, *controller.at, controller.curve.pieces(until, kMostPoints),
                        factor * value.factor);

@@ -41,7 +41,8 @@ class FebCurves {
  public:
   explicit FebCurves(FebFile& file) : file_(file) {}
 
-  double until = 0.0;  ///< End of the analysis [s]; curves that repeat are written out up to it.
+  bool dynamic = true;  ///< Whether the analysis is.
+  double until = 0.0;   ///< End of the analysis [s]; curves that repeat are written out up to it.
 
   /// Reads <LoadData>.
   void read(const XmlFile::Element& section);
@@ -51,6 +52,12 @@ class FebCurves {
   /// Times of the points of a load curve; none of other controllers.
   [[nodiscard]] std::vector<std::array<double, 2>> points(int controller) const;
 
+  /// The PID controllers that values use; to be called when all values are written.
+  /// @param bodies  Names in the model of the rigid bodies, by their name in the file.
+  /// @param order   Names in the model, in the order of the file.
+  void write_controllers(const std::map<std::string, std::string>& bodies,
+                         const std::vector<std::string>& order, SourceNode& root);
+
   std::optional<FebWindow> window;  ///< Of all values that are written while it is there.
 
  private:
@@ -58,14 +65,26 @@ class FebCurves {
     const XmlFile::Element* at = nullptr;
     std::string math;  ///< Expression of t in the language of a model file.
     FebCurve curve;
+    std::string channel;              ///< Parameter that a PID controller reads.
+    double target = 0.0, gains[3]{};  ///< Of it: proportional, integral, derivative.
     bool usable = false;
   };
+  /// A controller of the model: that of a file times a factor.
+  struct Controlled {
+    int id;
+    double factor;
+    std::string name;
+    const XmlFile::Element* at;  ///< First value that uses it.
+  };
+  void read_pid(const XmlFile::Element& e, Controller& controller);
+  SourceNode pid_node(const NodeBuilder& make, const FebValue& value, double factor);
   void read_curve(const XmlFile::Element& e, Controller& controller);
   SourceNode pieces_node(const NodeBuilder& make, const XmlFile::Element& at,
                          std::vector<FebPiece> pieces, double scale);
 
   FebFile& file_;
   std::map<int, Controller> controllers_;
+  std::vector<Controlled> controlled_;
 };
 
 /// An expression of FEBio in the language of a model file; "" if it has anything else.

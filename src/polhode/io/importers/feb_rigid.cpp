@@ -29,10 +29,16 @@ class RigidReader {
 
   void read_constraint(const Element& e) {
     const std::string type = file_.type(e);
+    if (model_.step != nullptr && type != "rigid_fixed") return not_in_step(e);
     FebBody* body = model_.body(e, "rb");
     if (type == "rigid_fixed") {
       static const char* const tags[] = {"Rx_dof", "Ry_dof", "Rz_dof",
                                          "Ru_dof", "Rv_dof", "Rw_dof"};
+      if (model_.step != nullptr && body != nullptr) {
+        const bool all = std::all_of(std::begin(tags), std::end(tags),
+                                     [&](const char* tag) { return file_.boolean(e, tag, false); });
+        return all ? hold_in_step(e, *body) : not_in_step(e);
+      }
       for (std::size_t k = 0; k < 6; ++k)
         if (file_.boolean(e, tags[k], false) && body != nullptr &&
             body->freedoms[k].kind == Freedom::free)
@@ -84,7 +90,24 @@ class RigidReader {
     if (!type.empty()) unknown(e, type);
   }
 
+  void not_in_step(const Element& e) {
+    file_.refuse(
+        e, format("<{}> of one step of several is not read", e.Name()),
+        "Put it outside the steps, with load curves over all of them; a rigid_fixed of all "
+        "six freedoms is read.");
+  }
+
  private:
+  /// A body that one step of several holds where it is then.
+  void hold_in_step(const Element& e, const FebBody& body) {
+    const NodeBuilder make = file_.make(e);
+    SourceNode joint = make.map();
+    make.put(joint, "type", make.text("fixed"));
+    make.put(joint, "bodies", make.list({make.text("ground"), make.text(body.name)}));
+    make.put(joint, "at", make.vector(body.com));
+    model_.add_joint(e, body.name + "_fixed", std::move(joint));
+  }
+
   void unknown(const Element& e, const std::string& type) {
     file_.refuse(e, format("<{}> of type {} is not read", e.Name(), quote(type)),
                  "Leave it out, and add to the model what it means.");
@@ -196,16 +219,9 @@ class RigidReader {
 void read_feb_rigid(FebModel& model, const Element& section) {
   RigidReader reader(model);
   const bool later = model.step != nullptr && model.step != &model.steps.front();
-  const auto read = [&](const char* tag, bool elsewhere, auto&& use) {
-    for (const Element* e : model.file.xml.children(section, tag))
-      if (elsewhere)
-        model.file.refuse(*e, format("<{}> of one step of several is not read", tag),
-                          "Put it outside the steps, with load curves over all of them.");
-      else
-        use(*e);
-  };
-  read("rigid_bc", model.step != nullptr, [&](const Element& e) { reader.read_constraint(e); });
-  read("rigid_ic", later, [&](const Element& e) { reader.read_start(e); });
+  for (const Element* e : model.file.xml.children(section, "rigid_bc")) reader.read_constraint(*e);
+  for (const Element* e : model.file.xml.children(section, "rigid_ic"))
+    later ? reader.not_in_step(*e) : reader.read_start(*e);
   for (const Element* e : model.file.xml.children(section, "rigid_load")) reader.read_load(*e);
   for (const Element* e : model.file.xml.children(section, "rigid_connector"))
     read_feb_connector(model, *e);

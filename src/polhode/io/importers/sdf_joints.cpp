@@ -153,10 +153,6 @@ class SdfJointReader {
       joint.friction = file_.not_negative(*dynamics, "friction");
       joint.stiffness = file_.not_negative(*dynamics, "spring_stiffness");
       joint.rest = file_.number(*dynamics, "spring_reference").value_or(0.0);
-      if (joint.type == "screw" && joint.friction > 0.0 && file_.options.friction)
-        file_.refuse(*dynamics,
-                     format("the friction of the screw {} is not read", quote(joint.name)),
-                     "Import without friction, and add a screw with friction of your own.");
     }
     read_limits(*axis, joint);
     file_.ignored.skip(*axis, {"initial_position"});

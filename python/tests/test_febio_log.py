@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text files in the format of FEBio's log file, and what a run with a closed form has in them."""
+
+import pathlib
+from typing import Any
+
+import numpy as np
+import pytest
+
+import polhode
+
+# A block of 1000 kg in free fall, which turns about z, beside a fixed body.
+MODEL = """<?xml version="1.0" encoding="ISO-8859-1"?>
+<!-- A comment. -->
+<febio_spec version="4.0">
+  <Module type="solid"/>
+  <Control><analysis>DYNAMIC</analysis><time_steps>10</time_steps><step_size>0.05</step_size>
+    <solver type="solid"><rhoi>1</rhoi></solver></Control>
+  <Material>
+    <material id="1" name="wall" type="rigid body"><center_of_mass>0,0,0</center_of_mass></material>
+    <material id="2" name="the block" type="rigid body"><density>1000</density></material>
+  </Material>
+  <Mesh>
+    <Nodes>
+      <node id="1">0,0,0</node><node id="2">1,0,0</node><node id="3">1,1,0</node><node id="4">0,1,0</node>
+      <node id="5">0,0,1</node><node id="6">1,0,1</node><node id="7">1,1,1</node><node id="8">0,1,1</node>
+    </Nodes>
+    <Elements type="hex8" name="part"><elem id="1">1,2,3,4,5,6,7,8</elem></Elements>
+    <NodeSet name="corners">1,7</NodeSet>
+  </Mesh>
+  <MeshDomains><SolidDomain name="part" mat="the block"/></MeshDomains>
+  <Rigid>
+    <rigid_bc type="rigid_fixed"><rb>wall</rb>
+      <Rx_dof>1</Rx_dof><Ry_dof>1</Ry_dof><Rz_dof>1</Rz_dof><Ru_dof>1</Ru_dof><Rv_dof>1</Rv_dof><Rw_dof>1</Rw_dof>
+    </rigid_bc>
+    <rigid_ic type="initial_rigid_angular_velocity"><rb>the block</rb><value>0,0,0.5</value></rigid_ic>
+  </Rigid>
+  <Loads><body_load type="body force"><force>0,0,10</force></body_load></Loads>
+  <Output><logfile file="run.log">{requests}</logfile></Output>
+</febio_spec>
+"""
+
+
+def written(tmp_path: pathlib.Path, requests: str) -> "list[str]":
+    file = tmp_path / "fall.feb"
+    file.write_text(MODEL.format(requests=requests))
+    return polhode.write_febio_log(polhode.run(polhode.load(file)), file, tmp_path)
+
+
+def blocks(path: str) -> "list[tuple[int, float, str, Any]]":
+    """Step, time, title and rows of each record, as a reader of FEBio's files has them."""
+    records = []
+    for part in pathlib.Path(path).read_text().split("*Step  = ")[1:]:
+        step, time, data, *rows = part.splitlines()
+        records.append((int(step), float(time.removeprefix("*Time  = ")), data.removeprefix("*Data  = "),
+                        np.array([[float(x) for x in row.replace(",", " ").split()] for row in rows])))
+    return records
+
+
+def test_bodies_and_nodes_are_written_as_febio_does(tmp_path: pathlib.Path) -> None:
+    paths = written(tmp_path, '<rigid_body_data data="x;z;vz;omz;qz;qw" file="body.txt" delim=", ">2</rigid_body_data>'
+                              '<node_data data="x;y;z;uz" name="places" node_set="corners"/>')
+    assert [pathlib.Path(p).name for p in paths] == ["body.txt", "fall_node_data_2.txt"]
+    records = blocks(paths[0])
+    assert [r[0] for r in records] == list(range(1, 11))
+    for _, t, title, rows in records:
+        assert title == "x;z;vz;omz;qz;qw"
+        turn = 0.25 * t
+        assert rows[0] == pytest.approx([2, 0.5, 0.5 - 5 * t * t, -10 * t, 0.5, np.sin(turn), np.cos(turn)], abs=2e-5)
+    for _, t, title, rows in blocks(paths[1]):
+        assert title == "places"
+        c, s = 0.5 * np.cos(0.5 * t), 0.5 * np.sin(0.5 * t)
+        assert rows[0] == pytest.approx([1, 0.5 - c + s, 0.5 - c - s, -5 * t * t, -5 * t * t], abs=2e-4)
+        assert rows[1] == pytest.approx([7, 0.5 + c - s, 0.5 + c + s, 1 - 5 * t * t, -5 * t * t], abs=2e-4)
+    text = (tmp_path / "body.txt").read_text()
+    assert text.startswith("*Step  = 1\n*Time  = 0.05\n*Data  = x;z;vz;omz;qz;qw\n2, 0.5, ")
+
+
+def test_lists_of_numbers_are_those_of_febio(tmp_path: pathlib.Path) -> None:
+    paths = written(tmp_path, '<node_data data="x">1:7:3, 8</node_data>')
+    assert [int(row[0]) for row in blocks(paths[0])[0][3]] == [1, 4, 7, 8]
+    paths = written(tmp_path, '<rigid_body_data data="x"/>')
+    assert [int(row[0]) for row in blocks(paths[0])[0][3]] == [1, 2]
+
+
+def test_what_no_probe_has_is_a_warning(tmp_path: pathlib.Path) -> None:
+    with pytest.warns(UserWarning, match='<element_data data="sx"> is not written: no probe has it'):
+        assert written(tmp_path, '<element_data data="sx">1</element_data>') == []
+    with pytest.warns(UserWarning, match='<rigid_body_data data="x;Fx"> is not written'):
+        assert written(tmp_path, '<rigid_body_data data="x;Fx">2</rigid_body_data>') == []
+
+
+def test_other_files_are_refused(tmp_path: pathlib.Path) -> None:
+    written(tmp_path, '<node_data data="x">1</node_data>')
+    result = polhode.run(polhode.load(tmp_path / "fall.feb"))
+    for text in ("<robot/>", '<!DOCTYPE a [<!ENTITY b "c">]><febio_spec/>'):
+        (tmp_path / "other.feb").write_text(text)
+        with pytest.raises(ValueError, match="is no FEBio file"):
+            polhode.write_febio_log(result, tmp_path / "other.feb")
