@@ -15,9 +15,10 @@ rm -rf build/wheel
 "$python" -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -w build/wheel -v . >"$log" 2>&1 ||
   { tail -50 "$log"; exit 1; }
 "$python" -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall build/wheel/polhode-*.whl
-"$python" -m ruff check --quiet python
+"$python" -m ruff check --quiet python benchmarks/peers tests/benchmark_peers.py
 mypy=(bin/mypy --config-file "$PWD/pyproject.toml" --python-executable "$python")
 (cd "$environment" && "${mypy[@]}" -p polhode && "${mypy[@]}" "$OLDPWD/python/tests")
+(cd "$environment" && MYPYPATH=$OLDPWD/benchmarks/peers "${mypy[@]}" "$OLDPWD"/benchmarks/peers/*.py "$OLDPWD/tests/benchmark_peers.py")
 "$python" -m pytest -q -p no:cacheprovider --timeout 300 "$@"
 [ $# = 0 ] || exit 0
 bash scripts/build_wheel.sh build/wheel/polhode-*.whl
