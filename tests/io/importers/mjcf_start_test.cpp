@@ -165,19 +165,19 @@ TEST_F(Mjcf, TunedJointsOscillateWithTheirTimeConstant) {
   }
 }
 
-// The servo moves both carts while the upper one rests on the lower: m = 4 kg, k = g^2 kp, and
-// critical damping is 2 sqrt(k m).
-TEST_F(Mjcf, DampingRatiosOfServosCountTheInertiaAtRest) {
+// The servo feels the lower cart alone where both move freely: m = 3 kg, k = g^2 kp, and critical
+// damping is 2 sqrt(k m).
+TEST_F(Mjcf, DampingRatiosOfServosCountTheInertiaOfTheirJoint) {
   const std::string servo =
       "<actuator><position name='p' joint='x' kp='9' gear='2' dampratio='0.5'/></actuator>";
   const Model model = read(carts("", "") + servo);
   EXPECT_EQ(load_of(model, "p")->parameters.at("stiffness"), 36.0);
-  EXPECT_NEAR(load_of(model, "p")->parameters.at("damping"), 0.5 * 2.0 * 12.0, 1e-13);
+  EXPECT_NEAR(load_of(model, "p")->parameters.at("damping"), std::sqrt(108.0), 1e-13);
   // A general one with a positive third bias is the same.
   const Model other = read(carts("", "") +
                            "<actuator><general name='p' joint='x' gear='2' gainprm='9' "
                            "biastype='affine' biasprm='0 -9 0.5'/></actuator>");
-  EXPECT_NEAR(load_of(other, "p")->parameters.at("damping"), 12.0, 1e-13);
+  EXPECT_NEAR(load_of(other, "p")->parameters.at("damping"), std::sqrt(108.0), 1e-13);
 }
 
 TEST_F(Mjcf, SpringsThatCannotBeTunedAreRefused) {
@@ -186,6 +186,9 @@ TEST_F(Mjcf, SpringsThatCannotBeTunedAreRefused) {
       HasSubstr("the joint 'j' has a 'springdamper', but is no hinge or slide"));
   EXPECT_THAT(body_fault("<body><joint name='j' springdamper='1 1'/></body>"),
               HasSubstr("the 'springdamper' of 'j' acts on a tree that has no inertia"));
+  EXPECT_THAT(fault("<worldbody><body><joint name='j'/></body></worldbody><actuator><position "
+                    "name='p' joint='j' dampratio='1'/></actuator>"),
+              HasSubstr("the actuator 'p' has a damping ratio in a tree that has no inertia"));
   std::string many = "<body name='a'><joint name='j' springdamper='1 1'/>" + kBall + "</body>";
   for (int k = 0; k < 167; ++k) many += "<body><freejoint/>" + kBall + "</body>";
   EXPECT_THAT(body_fault(many), HasSubstr("the 'springdamper' of 'j' stands in a model with more "

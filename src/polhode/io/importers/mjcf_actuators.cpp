@@ -159,17 +159,17 @@ class ActuatorReader {
   /// Damping by the inertia that the actuator moves in the model's configuration.
   bool put_ratio(const std::string& joint, double gear, RobotActuator& actuator) {
     if (!inertia_) inertia_.emplace(robot_, bodies_.frames());
-    if (!inertia_->is_there()) {
-      refuse(format("has a damping ratio in a model with more than {} joint velocities",
-                    MjcfInertia::kMost),
-             "Give 'kv'.");
-      return false;
-    }
-    for (std::size_t j = 0; j < robot_.joints.size(); ++j)
-      if (robot_.joints[j].name == joint)
-        actuator.damping =
-            2.0 * ratio_ * std::abs(gear) * std::sqrt(stiffness_ * inertia_->at_rest(j));
-    return true;
+    double J = 0.0;
+    for (std::size_t j = 0; inertia_->is_there() && j < robot_.joints.size(); ++j)
+      if (robot_.joints[j].name == joint) J = inertia_->effective(j);
+    actuator.damping = 2.0 * ratio_ * std::abs(gear) * std::sqrt(stiffness_ * J);
+    if (J > 0.0) return true;
+    refuse(inertia_->is_there()
+               ? "has a damping ratio in a tree that has no inertia at one of its joints"
+               : format("has a damping ratio in a model with more than {} joint velocities",
+                        MjcfInertia::kMost),
+           "Give 'kv'.");
+    return false;
   }
 
   MjcfFile& file_;

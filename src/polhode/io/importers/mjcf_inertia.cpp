@@ -59,7 +59,7 @@ MjcfInertia::MjcfInertia(const Robot& robot, const std::map<std::string, Pose>& 
   }
   if (!is_there()) return;
   for (std::size_t j = n; j-- > 0;) below[link.at(robot.joints[j].parent)] += below[j + 1];
-  mass_ = Eigen::MatrixXd::Zero(first_.back(), first_.back());
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(first_.back(), first_.back());
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t k = 0; k < S[j].size(); ++k) {
       const int row = first_[j] + static_cast<int>(k);
@@ -68,14 +68,14 @@ MjcfInertia::MjcfInertia(const Robot& robot, const std::map<std::string, Pose>& 
       for (std::size_t i = j + 1; i > 0; i = link.at(robot.joints[i - 1].parent))
         for (std::size_t m = 0; m < S[i - 1].size(); ++m) {
           const int column = first_[i - 1] + static_cast<int>(m);
-          mass_(row, column) = mass_(column, row) = S[i - 1][m].dot(momentum);
+          mass(row, column) = mass(column, row) = S[i - 1][m].dot(momentum);
         }
     }
   for (std::size_t j = 0; j < n; ++j)
-    for (int k = first_[j]; k < first_[j + 1]; ++k) mass_(k, k) += robot.joints[j].armature;
-  const Eigen::LLT<Eigen::MatrixXd> factors(mass_);
+    for (int k = first_[j]; k < first_[j + 1]; ++k) mass(k, k) += robot.joints[j].armature;
+  const Eigen::LLT<Eigen::MatrixXd> factors(mass);
   if (factors.info() == Eigen::Success)
-    mobility_ = factors.solve(Eigen::MatrixXd::Identity(mass_.rows(), mass_.cols())).diagonal();
+    mobility_ = factors.solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols())).diagonal();
 }
 
 double MjcfInertia::effective(std::size_t joint) const {

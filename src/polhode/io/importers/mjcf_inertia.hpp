@@ -20,20 +20,15 @@ class MjcfInertia {
   /// @param frames  Frame of each link in the world, by name.
   MjcfInertia(const Robot& robot, const std::map<std::string, Pose>& frames);
 
-  /// Inertia of a joint with one coordinate while all others are at rest [kg m², kg].
-  [[nodiscard]] double at_rest(std::size_t joint) const {
-    return mass_(first_[joint], first_[joint]);
-  }
   /// Inertia of a joint while all others are free to move, the harmonic mean over its velocities;
-  /// zero if the matrix is not positive.
+  /// zero if the matrix is not positive [kg m², kg].
   [[nodiscard]] double effective(std::size_t joint) const;
   /// Whether there are few enough joints.
   [[nodiscard]] bool is_there() const { return first_.back() <= kMost; }
 
  private:
-  std::vector<int> first_;  ///< Number of the first velocity of each joint, and of all.
-  Eigen::MatrixXd mass_;
-  Eigen::VectorXd mobility_;  ///< Diagonal of its inverse; empty if it is not positive.
+  std::vector<int> first_;    ///< Number of the first velocity of each joint, and of all.
+  Eigen::VectorXd mobility_;  ///< Diagonal of the inverse matrix; empty if that is not positive.
 };
 
 }  // namespace polhode::io
