@@ -78,7 +78,8 @@ void UnilateralRows::begin_step(const State& state, const Trial& trial) {
   first_ = true;
   for (Stop& stop : stops_) {
     stop.listed = false;
-    stop.impulse = 0.0;
+    const double* const memory = state.history.data() + stop.memory;
+    stop.impulse = read_record<UnilateralMemory>(memory).force * dt_;  // as of points, a guess
   }
   if (!contacts_) return;
   take_steps(state, trial);
@@ -108,7 +109,8 @@ void UnilateralRows::find(const StepContext& context, const Vec& x) {
   }
   const std::size_t known = points_.size();
   impulsive_->find_points(steps_, context, points_);
-  for (std::size_t k = known; k < points_.size(); ++k)
+  // Those of the last step are a guess for the first row problem of this one.
+  for (std::size_t k = known; k < points_.size() && !first_; ++k)
     points_[k].impulse = points_[k].turning = Vec3::Zero();
   impulsive_->place_points(steps_, points_);
 }
@@ -232,8 +234,7 @@ std::string UnilateralRows::name_of(const Row& row) const {
   return is_point(row) ? "the contact of " + names_of(row.a, row.b) : name_of(stop_of(row));
 }
 
-double UnilateralRows::given(const Row& row) const {
-  if (first_) return 0.0;
+double UnilateralRows::impulse_of(const Row& row) const {
   if (!is_point(row)) return stop_of(row).impulse;
   const ImpulsePoint& p = points_[static_cast<std::size_t>(row.source)];
   return (row.turns ? p.turning : p.impulse).dot(row.direction);
@@ -258,6 +259,7 @@ void UnilateralRows::add_scales(const Row& row, double& far, double& fastest) co
 /// Stores the impulses of all rows.
 void UnilateralRows::take_impulses(const Vec& sums) {
   for (ImpulsePoint& point : points_) point.impulse = point.turning = Vec3::Zero();
+  for (Stop& stop : stops_) stop.impulse = 0.0;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
     const double p = sums[static_cast<Eigen::Index>(i)];
@@ -279,7 +281,10 @@ bool UnilateralRows::solve(const State& state, const Trial& trial, double scale,
   find(trial.context, x);
   put_rows();
   const auto n = static_cast<Eigen::Index>(rows_.size());
-  if (n == 0) return true;
+  if (n == 0) {
+    take_impulses(Vec());
+    return true;
+  }
   if (rows_.size() > kMostRows) {
     solved_ = false;
     unsolved_ = format("contacts have {} rows, more than the {} of law: rigid; use law: barrier",
@@ -298,9 +303,10 @@ bool UnilateralRows::solve(const State& state, const Trial& trial, double scale,
   }
 
   Mat A(n, n);
-  Vec y(n), impulses = Vec::Zero(n);
-  for (Eigen::Index i = 0; i < n && !first_; ++i) {
-    impulses[i] = given(rows_[static_cast<std::size_t>(i)]);
+  Vec y(n), impulses = Vec::Zero(n), guess = Vec::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double before = impulse_of(rows_[static_cast<std::size_t>(i)]);
+    (first_ ? guess : impulses)[i] = before;
     if (impulses[i] != 0.0) x += impulses[i] * responses_[static_cast<std::size_t>(i)];
   }
   double fastest = 0.0, far = system_->length_scale();
@@ -328,7 +334,9 @@ bool UnilateralRows::solve(const State& state, const Trial& trial, double scale,
     problem.given = impulses(island);
     take_blocks(island, problem);
     Vec of_island = Vec::Zero(problem.b.size());
-    const RowReport report = problem.solve(of_island, rounding);
+    const Vec before = guess(island);
+    const bool guessed = !before.isZero(0.0);
+    const RowReport report = problem.solve(of_island, rounding, guessed ? &before : nullptr);
     if (!report.converged) {
       solved_ = false;
       const auto worst = static_cast<std::size_t>(std::max<Eigen::Index>(0, report.worst));

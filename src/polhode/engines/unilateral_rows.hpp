@@ -79,8 +79,8 @@ class UnilateralRows {
   [[nodiscard]] const Stop& stop_of(const Row& row) const {
     return stops_[static_cast<std::size_t>(row.source) - points_.size()];
   }
-  /// Impulse of the iteration before.
-  [[nodiscard]] double given(const Row& row) const;
+  /// Impulse of the iteration before; in the first one that of the step before.
+  [[nodiscard]] double impulse_of(const Row& row) const;
   /// Largest distance from the origin of what a row acts on [m], and speed there [m/s].
   void add_scales(const Row& row, double& far, double& fastest) const;
   void take_impulses(const Vec& sums);

@@ -32,6 +32,8 @@ constexpr LineSearchRule kHalveRows{0.0, 8, 0.5, 0.5, 0.5};
 constexpr std::size_t kLookBack = 5;
 /// Initial proximal parameters ε, parts of the diagonal of A: of the first search and of restarts.
 constexpr std::array kProximalParts{1e-3, 1e-1};
+/// Likewise of a search from a guess, whose rows act as those of the solution for the most part.
+constexpr double kProximalOfGuess = 1e-6;
 /// Factor of that part after an iteration that leaves more than this of the error, and the part at
 /// which they end: below the rounding of velocities.
 constexpr double kLessProximal = 0.1, kLeastProximal = 1e-14;
@@ -39,11 +41,20 @@ constexpr double kLessProximal = 0.1, kLeastProximal = 1e-14;
 constexpr int kSweeps = 25;
 constexpr int kRounds = 6, kRoundsOfMany = 2;  ///< The latter beyond kMostDenseRows.
 
+/// Matrices whose rows are taken one by one.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Velocities of a problem and the natural map of its impulses.
 class Search {
  public:
   Search(const RowProblem& problem, const Vec& start, double tolerance)
-      : problem_(problem), start_(start), best_(start), p_(start), tolerance_(tolerance) {
+      : problem_(problem),
+        A_(problem.A),
+        sizes_(A_.cwiseAbs()),
+        start_(start),
+        best_(start),
+        p_(start),
+        tolerance_(tolerance) {
     d_.setZero(start.size());
     const double most = start.size() > 0 ? problem.A.diagonal().maxCoeff() : 0.0;
     for (const ImpulseRows& block : problem.blocks) {
@@ -52,8 +63,12 @@ class Search {
     }
   }
 
-  RowReport run(Vec& p) {
+  RowReport run(Vec& p, const Vec* guess) {
     bool found = start_.size() == 0;
+    if (guess && !found) {
+      p_ = *guess;
+      found = newton(start_, kProximalOfGuess, true);
+    }
     for (const double part : kProximalParts) {
       if (found) break;
       p_ = best_;
@@ -80,7 +95,7 @@ class Search {
 
   /// The natural map F at p_, and its derivative if wanted.
   /// @param y  Velocities at p_. @param D  Their derivative.
-  void evaluate(const Vec& y, const Mat& D, Vec& F, Mat* J) {
+  void evaluate(const Vec& y, const Rows& D, Vec& F, Rows* J) {
     const Index n = p_.size();
     F = p_ - start_;  // rows that no impulse moves keep theirs
     pressed_ = (problem_.given + p_).cwiseMax(0.0);
@@ -99,7 +114,7 @@ class Search {
   }
 
   /// The bound is that on the ray through the impulses.
-  void friction(const ImpulseRows& block, const Vec& y, const Mat& D, Vec& F, Mat* J) const {
+  void friction(const ImpulseRows& block, const Vec& y, const Rows& D, Vec& F, Rows* J) const {
     const Index t = block.first, k = block.size, n = block.normal;
     const auto axes = block.half_axes.head(k);
     F.segment(t, k) = problem_.given.segment(t, k) + p_.segment(t, k);
@@ -133,11 +148,10 @@ class Search {
   /// Largest error of a row's velocity, as a part of what is allowed. @param worst  Its row.
   [[nodiscard]] double excess(const Vec& F, Index* worst = nullptr) const {
     double largest = 0.0;
+    const Vec terms = sizes_ * p_.cwiseAbs() + problem_.b.cwiseAbs();
     for (Index i = 0; i < F.size(); ++i) {
       const double error = std::abs(F[i]) * d_[i] * problem_.lengths[i];
-      const double rounding =
-          kRounding * problem_.lengths[i] *
-          (problem_.A.row(i).cwiseAbs().dot(p_.cwiseAbs()) + std::abs(problem_.b[i]));
+      const double rounding = kRounding * problem_.lengths[i] * terms[i];
       const double part = error > 0.0         ? error / (tolerance_ + rounding)
                           : std::isnan(error) ? kEndless
                                               : 0.0;
@@ -151,9 +165,9 @@ class Search {
 
   /// Keeps p_ if it is the best so far. @returns whether it solves the problem.
   bool accept() {
-    y_exact_.noalias() = problem_.A * p_;
+    y_exact_.noalias() = A_ * p_;
     y_exact_ += problem_.b;
-    evaluate(y_exact_, problem_.A, F_exact_, nullptr);
+    evaluate(y_exact_, A_, F_exact_, nullptr);
     Index worst = -1;
     const double error = excess(F_exact_, &worst);
     if (error < least_) {
@@ -167,12 +181,13 @@ class Search {
   }
 
   /// Newton's method inside proximal iterations, which add ε_i d times the change of an impulse
-  /// since the last one to its velocity. @returns whether it solves the problem.
-  bool newton(const Vec& centre, double part) {
+  /// since the last one to its velocity. @param guessed  p_ is not near the centre, and no solution
+  /// before the first iteration. @returns whether it solves the problem.
+  bool newton(const Vec& centre, double part, bool guessed = false) {
     Vec middle = centre, y, F;
-    Mat D = problem_.A, J;
+    Rows D = A_, J;
     D.diagonal() += part * d_;
-    const auto merit = [&](Mat* derivative) {
+    const auto merit = [&](Rows* derivative) {
       y.noalias() = D * p_;
       y += problem_.b - part * d_.cwiseProduct(middle);
       evaluate(y, D, F, derivative);
@@ -186,8 +201,9 @@ class Search {
     for (int it = 0, last = 0; it < kMostIterations && it - last < kPatience; ++it) {
       const double now = merit(&J);
       if (!std::isfinite(now)) return false;
-      if (accept()) return true;
-      if (excess(F) <= 1.0) {  // solved, with the proximal terms
+      const bool begins = guessed && it == 0;
+      if (!begins && accept()) return true;
+      if (!begins && excess(F) <= 1.0) {  // solved, with the proximal terms
         middle = p_;
         // A smaller part also multiplies rounding where rows share a load.
         if (least_ > kLessProximal * left) {
@@ -220,8 +236,8 @@ class Search {
   }
 
   /// Newton step −J⁻¹ F. Rows without an impulse, whose part of J is that of the identity, are
-  /// not factored.
-  [[nodiscard]] Vec solved(const Mat& J, const Vec& F) const {
+  /// not factored, and others not anew where all stick as before.
+  [[nodiscard]] Vec solved(const Rows& J, const Vec& F) {
     std::vector<Index> acts;
     for (Index i = 0; i < F.size(); ++i)
       if (J(i, i) != 1.0 || J.row(i).cwiseAbs().sum() != 1.0) acts.push_back(i);
@@ -229,8 +245,12 @@ class Search {
     if (acts.empty()) return step;
     step(acts).setZero();
     const Vec right = -F - J * step;
-    const Mat own = J(acts, acts);
-    const Vec of_own = own.partialPivLu().solve(Vec(right(acts)));
+    Rows own = J(acts, acts);
+    if (own.rows() != factored_.rows() || own != factored_) {
+      factors_.compute(own);
+      factored_.swap(own);
+    }
+    const Vec of_own = factors_.solve(Vec(right(acts)));
     for (std::size_t k = 0; k < acts.size(); ++k) step[acts[k]] = of_own[static_cast<Index>(k)];
     return step;
   }
@@ -276,11 +296,14 @@ class Search {
   using FewByFew = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 
   const RowProblem& problem_;
+  const Rows A_, sizes_;  ///< A of the problem, and its entries' magnitudes.
   Vec start_, best_, p_;
   double tolerance_, least_ = kEndless;
   Vec d_;        ///< Mobility of each row, that of its block; 0: no impulse moves it.
   Vec pressed_;  ///< Normal impulses, projected.
   Vec y_exact_, F_exact_;
+  Rows factored_;  ///< Matrix of the factors.
+  Eigen::PartialPivLU<Rows> factors_;
   RowReport report_;
 };
 
@@ -293,8 +316,8 @@ RowProblem::RowProblem(Eigen::Index rows)
       lengths(Vec::Ones(rows)) {}
 
 /// @eq{row-problem}
-RowReport RowProblem::solve(Vec& p, double tolerance) const {
-  return Search(*this, p, tolerance).run(p);
+RowReport RowProblem::solve(Vec& p, double tolerance, const Vec* guess) const {
+  return Search(*this, p, tolerance).run(p, guess);
 }
 
 }  // namespace polhode

@@ -58,7 +58,9 @@ struct RowProblem {
   /// velocity, 64 ε (Σ|A_ij p_j| + |b_i|). Otherwise the best impulses found are left, and the
   /// report says so.
   /// @param p  Initial impulses; the solution. @param tolerance  Of velocities [m/s].
-  [[nodiscard]] RowReport solve(Vec& p, double tolerance) const;
+  /// @param guess  Impulses at which the search begins instead, such as those of the step before;
+  /// the solution is still the nearest one to the initial impulses. Null: none.
+  [[nodiscard]] RowReport solve(Vec& p, double tolerance, const Vec* guess = nullptr) const;
 };
 
 /// Largest number of rows for which the dense factors of RowProblem pay.
