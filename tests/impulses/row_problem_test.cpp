@@ -112,6 +112,39 @@ TEST(RowProblem, MeetsSignorinisAndCoulombsConditionsOfRandomPoints) {
   EXPECT_LT(iterations, 15 * count);
 }
 
+/// A guess changes the number of iterations, not the solution: unique impulses, and shares of a
+/// load, whatever the guess.
+TEST(RowProblem, AGuessDoesNotChangeTheSolution) {
+  int alone = 0, guessed = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const RowProblem q = random_points(4, 4, 0.3, seed).problem();
+    Vec p = Vec::Zero(q.b.size());
+    alone += q.solve(p, 0.0).iterations;
+    for (const double wrong : {1e-3, 1.0}) {
+      Vec again = Vec::Zero(q.b.size());
+      const Vec guess = (1.0 + wrong) * p;
+      const RowReport report = q.solve(again, 0.0, &guess);
+      EXPECT_TRUE(report.converged);
+      expect_solved(q, again);
+      EXPECT_LT((again - p).lpNorm<Eigen::Infinity>(), 1e-9 * (1.0 + p.lpNorm<Eigen::Infinity>()));
+      if (wrong < 1.0) guessed += report.iterations;
+    }
+  }
+  EXPECT_LT(guessed, alone);
+
+  RowProblem table(4);
+  const Eigen::Matrix<double, 4, 2> corner =
+      (Eigen::Matrix<double, 4, 2>() << 1, 1, 1, -1, -1, 1, -1, -1).finished();
+  table.A = Mat::Ones(4, 4) + 6.0 * corner * corner.transpose();
+  table.b = Vec::Constant(4, -9.81);
+  for (Index i = 0; i < 4; ++i) table.blocks.push_back({.kind = Kind::normal, .first = i});
+  for (const Vec& guess : {Vec(Vec::Constant(4, 2.0)), Vec(Vec::Unit(4, 0) + Vec::Unit(4, 3))}) {
+    Vec p = Vec::Zero(4);
+    EXPECT_TRUE(table.solve(p, 0.0, &guess).converged);
+    EXPECT_LT((p.array() - 9.81 / 4.0).abs().maxCoeff(), 1e-6) << p.transpose();
+  }
+}
+
 /// The kinetic energy of bodies never rises by impulses without targets.
 TEST(RowProblem, OnlyDissipates) {
   for (unsigned seed = 0; seed < 30; ++seed) {

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include <polhode/beams/slide_on_beam.hpp>
+#include <polhode/compile/contact_law_choice.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/threads.hpp>
@@ -106,6 +107,17 @@ bool has_elastic_pairs(const System& system) {
   return false;
 }
 
+/// The law of contacts, and why they are not rows where the model could have been given them.
+std::string contact_narration(const System& system, const Model& model) {
+  if (!model.contacts.present || model.contacts.nonsmooth()) return {};
+  if (UnilateralRows::of(system))
+    return "Contacts: rows of the step, as exact as joints (law rigid).\n";
+  const ContactLawChoice choice = choose_contact_law(model);
+  if (choice.law == "rigid") return {};
+  return format("Contacts: forces (law {}), {}.\n", model.contacts.standard.potential,
+                choice.reason);
+}
+
 std::unique_ptr<NewtonEngine> choose_engine(const System& system, const AnalysisSpec& a,
                                             MomentumRate rate, JacobianPolicy policy,
                                             std::string& narration) {
@@ -176,7 +188,7 @@ Method choose_method(const System& system, const Model& model) {
   const JacobianPolicy policy = jacobian_policy(a.jacobian);
   StepControl& c = m.control;
   const OrderChoice choice = choose_order(system, model);
-  m.narration = choice.reason;
+  m.narration = choice.reason + contact_narration(system, model);
   m.scheme = choice.text();
   c.order = choice.order;
   c.extrapolated = choice.extrapolated;

@@ -5,6 +5,7 @@
 
 #include <polhode/compile/build_contacts.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
+#include <polhode/compile/contact_law_choice.hpp>
 #include <polhode/compile/contact_sides.hpp>
 #include <polhode/contact_laws/normal_law.hpp>
 #include <polhode/core/error.hpp>
@@ -25,6 +26,23 @@ constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_
 
 /// Those that are available where contacts are rows of the step.
 constexpr std::array kKeysOfRows{"static_friction", "friction_across", "direction"};
+
+/// Keys of laws by force; a model that has one of them, or names a law, gets the barrier or that
+/// law, others the one that is chosen for them.
+constexpr std::array kKeysOfForces{"law",
+                                   "gap_tolerance",
+                                   "stiffness",
+                                   "hertz_stiffness",
+                                   "reference_load",
+                                   "reference_pressure",
+                                   "rebound",
+                                   "friction_stiffness",
+                                   "friction_damping"};
+
+bool asks_for_forces(const SourceNode& law) {
+  return law.is_map() && std::any_of(kKeysOfForces.begin(), kKeysOfForces.end(),
+                                     [&](const char* key) { return law.find(key) != nullptr; });
+}
 
 /// Whether a law applies to all pairs, as it determines the integration.
 bool is_of_all(const ContactLawSpec& law) {
@@ -437,6 +455,18 @@ std::optional<std::array<Side, 2>> read_side_pair(ReadContext& context, const So
                      : Side::of_solid(context.solids.at(child.text));
   }
   return sides;
+}
+
+void choose_law(ReadContext& context, const SourceNode& contacts) {
+  const SourceNode* standard = contacts.is_map() ? contacts.find("default") : nullptr;
+  const SourceNode* pairs = contacts.is_map() ? contacts.find("pairs") : nullptr;
+  if (standard && asks_for_forces(*standard)) return;
+  if (pairs && pairs->is_map() &&
+      std::any_of(pairs->children.begin(), pairs->children.end(), asks_for_forces))
+    return;
+  ContactsSpec& spec = context.model.contacts;
+  spec.standard.potential = choose_contact_law(context.model).law;
+  for (ContactPairSpec& pair : spec.pairs) pair.law.potential = spec.standard.potential;
 }
 
 void read_contacts(ReadContext& context, const SourceNode& node) {

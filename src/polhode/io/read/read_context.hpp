@@ -311,5 +311,7 @@ SourceLocation place_of_path(const ReadContext& context, const SourceNode& root,
                              std::string_view path);
 /// Checks that require the whole model: orders against loads, etc.
 void check_model(ReadContext& context, const SourceNode& root);
+/// Chooses the law of contacts where the file names none; after the analysis has been read.
+void choose_law(ReadContext& context, const SourceNode& contacts);
 
 }  // namespace polhode::io

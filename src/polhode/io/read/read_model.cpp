@@ -116,6 +116,7 @@ void read_root(ReadContext& context, const SourceNode& root) {
     read_analysis(context, *node, context.tree.place_of(*node));
   if (const SourceNode* node = root.find("output"))
     read_output(context, *node, context.tree.place_of(*node));
+  if (const SourceNode* node = root.find("contacts")) choose_law(context, *node);
   if (model.bodies.empty() && model.solids.empty() && context.diagnostics.empty())
     context.diagnostics.add(start, "bodies", "the model has no bodies",
                             "Add 'bodies: {name: {...}}'.");

@@ -42,12 +42,13 @@ std::vector<Field> law_fields() {
       {.name = "law",
        .kind = kChoice,
        .meaning =
-           "Potential of the normal force: a barrier in a thin band at the surface, which "
-           "no load exceeds; a force linear in the penetration; or Hertz's law, with "
-           "penetration to the power 3/2. rigid: no penetration at all, exact like a "
-           "joint that only pushes, for mechanisms and small stacks. nonsmooth: impulses "
-           "instead of forces, for many bodies without joints. The last two in default only.",
-       .standard = "barrier",
+           "rigid: no penetration at all, exact like a joint that only pushes. Or the potential of "
+           "the normal force: a barrier in a thin band at the surface, which no load exceeds; a "
+           "force linear in the penetration; or Hertz's law, with penetration to the power 3/2. "
+           "nonsmooth: impulses instead of forces, for many bodies without joints. The first and "
+           "the last in default only.",
+       .standard = "rigid for few bodies with simple shapes, see docs/reference/contacts.md; else, "
+                   "or with a key of forces, barrier",
        .choices = law_words(),
        .member = &ContactLawSpec::potential},
       {.name = "gap_tolerance",

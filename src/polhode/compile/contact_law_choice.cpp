@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/compile/contact_law_choice.hpp>
+#include <polhode/compile/contact_sides.hpp>
+#include <polhode/core/format.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Number of bodies that move and touch, up to which rows cost no more than the barrier; and of
+/// those with edges. Two bodies whose edges meet flush have many rows, and rounded edges that are
+/// small beside their motion in a step: not all of their steps end.
+constexpr int kMostBodiesOfRows = 12, kMostWithEdges = 1;
+
+bool is_sampled(const ShapeSpec& shape) {
+  return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
+}
+
+bool has_edges(const ShapeSpec& shape) {
+  return shape.type == "box" || shape.type == "hull" || shape.type == "cylinder" ||
+         shape.type == "cone";
+}
+
+bool gives_way(const std::optional<JointLimitsSpec>& limits) {
+  return limits && (limits->band || limits->stiffness);
+}
+
+}  // namespace
+
+ContactLawChoice choose_contact_law(const Model& model) {
+  const AnalysisSpec& a = model.analysis;
+  const auto barrier = [](std::string reason) { return ContactLawChoice{"barrier", reason}; };
+  if (a.type != "dynamics") return barrier(format("as the analysis is one of {}", a.type));
+  if (a.rho_inf != 1.0) return barrier("as rho_inf is below 1");
+  if (a.momentum_rate != "momentum") return barrier("as momentum_rate is not momentum");
+  if (!model.solids.empty()) return barrier("as there are deformable solids");
+  if (!model.cables.empty()) return barrier("as there are cables");
+  for (const JointSpec& joint : model.joints)
+    if (gives_way(joint.limits) || gives_way(joint.angle_limits))
+      return barrier(format("as the stop of joint '{}' gives way", joint.name));
+  int moving = 0, with_edges = 0;
+  for (const BodySpec& body : model.bodies) {
+    bool touches = false, edges = false;
+    for (std::size_t s = 0; s < body.shapes.size(); ++s) {
+      if (!contact_side(body, s).touches) continue;
+      touches = true;
+      edges = edges || has_edges(body.shapes[s]);
+      if (is_sampled(body.shapes[s]))
+        return barrier(format("as body '{}' has a {}", body.name, body.shapes[s].type));
+    }
+    if (body.fixed) continue;
+    if (touches) ++moving;
+    if (edges) ++with_edges;
+  }
+  if (with_edges > kMostWithEdges) return barrier("as two bodies with edges may touch");
+  if (moving > kMostBodiesOfRows)
+    return barrier(format("as more than {} bodies may touch", kMostBodiesOfRows));
+  return {"rigid", ""};
+}
+
+}  // namespace polhode
