@@ -49,7 +49,7 @@ class BatchWork {
  public:
   BatchWork(const std::function<Model(std::size_t)>& model, std::size_t runs,
             const BatchOptions& options)
-      : model_(model), options_(options), runs_(runs), first_(model(0)) {
+      : model_(model), options_(options), runs_(runs), first_(model_of(0)) {
     batch_.times = frame_times(first_);
     batch_.why_alone = why_alone(first_);
     batch_.messages.resize(runs);
@@ -107,12 +107,18 @@ class BatchWork {
     return specs_.size() - 1;
   }
 
+  /// The model of a run, which has one thread, as runs share the processors.
+  [[nodiscard]] Model model_of(std::size_t run) const {
+    Model model = model_(run);
+    model.analysis.threads = 1;
+    return model;
+  }
+
   void take_group(std::size_t from, std::size_t to) {
     std::vector<Member> members;
     for (std::size_t run = from; run < to; ++run) {
       try {
-        Model model = model_(run);
-        model.analysis.threads = 1;  // the runs share the processors
+        Model model = model_of(run);
         if (batch_.why_alone.empty() && same_mechanism(first_, model))
           members.push_back({run, std::move(model)});
         else
