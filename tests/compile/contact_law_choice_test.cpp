@@ -12,7 +12,8 @@ namespace polhode::contact_law_choice_tests {
 namespace {
 
 constexpr const char* kBall = "  ball: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 1]}\n";
-constexpr const char* kCrate = "  crate: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [1, 0, 1]}\n";
+constexpr const char* kCrate =
+    "  crate: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [1, 0, 1]}\n";
 
 Model model(const std::string& bodies, const std::string& contacts = "{}",
             const std::string& analysis = "", const std::string& more = "") {

@@ -192,9 +192,10 @@ Action add_run(CLI::App& command) {
       ->type_name("TIME");
   add_isa_option(command, options->isa);
   command
-      .add_option("--threads", options->threads,
-                  "Threads for the members of extrapolated steps, instead of the model's; results have the "
-                      "same bits")
+      .add_option(
+          "--threads", options->threads,
+          "Threads for the members of extrapolated steps, instead of the model's; results have the "
+          "same bits")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command.add_option("--restart", options->restart, "Continue from a checkpoint of this model")
