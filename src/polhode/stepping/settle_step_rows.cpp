@@ -150,6 +150,8 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
       const Row& row = rows[static_cast<std::size_t>(problem.contacts[k].normal)];
       ResolvedImpact& s = settled_[static_cast<std::size_t>(row.impact)];
       s.solved = true;
+      // Restitution returns it with the work of the rows, which alone would seem to gain.
+      s.normal_loss += island.projected / static_cast<double>(problem.contacts.size());
       s.closed = result.closed[k] != 0;
       s.sticks = result.sticks[k] != 0;
     }
