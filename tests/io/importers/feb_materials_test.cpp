@@ -155,6 +155,50 @@ TEST_F(FebMaterials, MixturesAddTheEnergiesOfTheirFibres) {
                 });
 }
 
+// Energies of parts of one family add up to a material of the model.
+TEST_F(FebMaterials, PartsOfOneFamilyAreOneMaterial) {
+  const std::string soft = "<solid type='neo-Hookean'><E>3e3</E><v>0.1</v></solid>";
+  const auto softer = [](const Mat3& F) {
+    const double mu = 3e3 / 2.2, lame = 3e3 * 0.1 / (1.1 * 0.8), g = std::log(F.determinant());
+    return mu / 2.0 * (first(F) - 3.0) - mu * g + lame / 2.0 * g * g;
+  };
+  const auto second = [](const Mat3& F) {
+    const Mat3 C = F.transpose() * F;
+    return 0.5 * (C.trace() * C.trace() - (C * C).trace());
+  };
+  expect_energy("solid mixture", kNeoHookean + soft,
+                [&](const Mat3& F) { return neo_hookean(F) + softer(F); });
+  expect_energy("solid mixture",
+                kNeoHookean + std::string("<solid type='coupled Mooney-Rivlin'><c1>500</c1><c2>300"
+                                          "</c2><k>4e3</k></solid>"),
+                [&](const Mat3& F) {
+                  const double g = std::log(F.determinant());
+                  return neo_hookean(F) + 500 * (first(F) - 3.0) + 300 * (second(F) - 3.0) -
+                         2.0 * (500 + 600) * g + 2e3 * g * g;
+                });
+  const std::string mooney = "<solid type='Mooney-Rivlin'><c1>2e3</c1><c2>400</c2></solid>";
+  expect_energy("uncoupled solid mixture", "<k>2e6</k>" + mooney + mooney, [&](const Mat3& F) {
+    const Mat3 G = isochoric(F);
+    return 4e3 * (first(G) - 3.0) + 800 * (second(G) - 3.0) + volume(F, 2e6);
+  });
+  const std::string ogden = "<solid type='Ogden'><c1>2e4</c1><m1>2.4</m1></solid>";
+  expect_energy("uncoupled solid mixture", "<k>2e6</k>" + mooney + ogden, [&](const Mat3& F) {
+    const Mat3 G = isochoric(F);
+    return 2e3 * (first(G) - 3.0) + 400 * (second(G) - 3.0) + volume(F, 2e6) +
+           2e4 / (2.4 * 2.4) * (stretches(G).array().pow(2.4).sum() - 3.0);
+  });
+  const auto term = [](const Mat3& F, double c, double m) {
+    return c / (m * m) * (stretches(F).array().pow(m).sum() - 3.0 - m * std::log(F.determinant()));
+  };
+  expect_energy("solid mixture",
+                "<solid type='Ogden unconstrained'><cp>5e3</cp><c1>2e4</c1><m1>2.4</m1></solid>"
+                "<solid type='Ogden unconstrained'><cp>4e3</cp><c1>900</c1><m1>-3</m1></solid>",
+                [&](const Mat3& F) {
+                  const double J = F.determinant() - 1.0;
+                  return term(F, 2e4, 2.4) + term(F, 900, -3) + 4.5e3 * J * J;
+                });
+}
+
 TEST_F(FebMaterials, MixturesHaveTheDensityAndTheBulkModulusOfTheirParts) {
   const Model coupled = read(
       cube("solid mixture",
@@ -181,8 +225,15 @@ TEST_F(FebMaterials, WhatCannotBeReadIsNamed) {
   const std::string fibre =
       "<solid type='fiber-exp-pow'><ksi>1</ksi><alpha>0</alpha><beta>2</beta></solid>";
   EXPECT_THAT(said("solid mixture", fibre), HasSubstr("a mixture of fibres alone is not read"));
-  EXPECT_THAT(said("solid mixture", std::string(kNeoHookean) + kNeoHookean),
-              HasSubstr("two materials that are not fibres"));
+  EXPECT_THAT(said("solid mixture", kNeoHookean + std::string("<solid type='isotropic elastic'><E>1"
+                                                              "</E><v>0.3</v></solid>")),
+              HasSubstr("two materials that are not fibres, and not of one family"));
+  std::string terms;
+  for (int k = 1; k <= 6; ++k) terms += format("<c{0}>1</c{0}><m{0}>{0}</m{0}>", k);
+  EXPECT_THAT(said("uncoupled solid mixture", "<k>9</k><solid type='Ogden'>" + terms +
+                                                  "</solid><solid type='Mooney-Rivlin'><c1>1</c1>"
+                                                  "</solid>"),
+              HasSubstr("two materials that are not fibres, and not of one family"));
   EXPECT_THAT(
       said("solid mixture", "<solid type='Mooney-Rivlin'><c1>1</c1><k>9</k></solid>" + fibre),
       HasSubstr("coupled and with uncoupled response"));

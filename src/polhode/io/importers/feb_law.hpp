@@ -63,4 +63,9 @@ class FebLaw {
   double bulk_ = 0.0;  ///< Of an uncoupled material [Pa].
 };
 
+/// A material whose energy is the sum of those of several, without density, bulk modulus and
+/// fibres; nothing if no material of a model is.
+[[nodiscard]] std::optional<SourceNode> sum_of_laws(const NodeBuilder& make,
+                                                    const std::vector<SourceNode>& laws);
+
 }  // namespace polhode::io

@@ -115,7 +115,7 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
   const std::optional<Mat3> outer = axes(e);
   if (!outer) return false;
   if (!has_pressure_model(e, 0)) return false;
-  int matrices = 0;
+  std::vector<SourceNode> matrices;
   double density = 0.0;
   for (const Element* part = e.FirstChildElement("solid"); part != nullptr;
        part = part->NextSiblingElement("solid")) {
@@ -137,17 +137,24 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
                    "Give it by itself: the mixture has another pressure.");
       return false;
     }
-    if (++matrices > 1) {
-      file_.refuse(*part, "a mixture of two materials that are not fibres is not read",
-                   "Give one of them, and fibres.");
-      return false;
-    }
+    node_ = make_.map();
     if (!put_matrix(*part, kind, *outer)) return false;
+    matrices.push_back(std::move(node_));
   }
-  if (matrices == 0) {
+  if (matrices.empty()) {
     file_.refuse(e, "a mixture of fibres alone is not read", "Give one material and fibres.");
     return false;
   }
+  std::optional<SourceNode> sum = matrices.size() == 1 ? std::optional(std::move(matrices.front()))
+                                                       : sum_of_laws(make_, matrices);
+  if (!sum) {
+    file_.refuse(
+        e, "a mixture of two materials that are not fibres, and not of one family, is not read",
+        "Give one of them, and fibres; sums of neo-Hookean and coupled Mooney-Rivlin, of "
+        "Mooney-Rivlin and Ogden, and of Ogden unconstrained are read.");
+    return false;
+  }
+  node_ = std::move(*sum);
   for (const bool isochoric : isochoric_)
     if (isochoric != uncoupled_) {
       file_.refuse(e, "a mixture of materials with coupled and with uncoupled response is not read",
