@@ -57,7 +57,7 @@ joints:
 cables:
   rope: {through: [[ground, [-0.3, 0, 0]], [ball]], stiffness: 5 kN, mass_per_length: 0.1, damping: 1,
          elements: 16, contact: {radius: 5 mm}}
-contacts: {default: {friction: 0.3, restitution: 0.5}}
+contacts: {default: {law: barrier, friction: 0.3, restitution: 0.5}}
 analysis: {duration: 0.4 s, step: 1 ms}
 )",
       "rope.yaml");
@@ -76,7 +76,7 @@ solids:
 cables:
   rope: {through: [[ground, [-0.15, 0, 0]], [ball]], stiffness: 2 kN, mass_per_length: 0.1, damping: 1,
          elements: 10, contact: {radius: 5 mm}}
-contacts: {default: {friction: 0.3, restitution: 0.5}}
+contacts: {default: {law: barrier, friction: 0.3, restitution: 0.5}}
 analysis: {duration: 30 ms, step: 1 ms}
 )",
                              "pad.yaml");
@@ -100,7 +100,7 @@ bodies:
   drum: {shape: {tube: [0.06, 0.04, 0.05]}, mass: 0.2, orientation: {axis: x, angle: 80 deg}, position: [0.1, -0.05, 0.06]}
   crate: {shape: {box: [0.05, 0.04, 0.03]}, mass: 0.2, position: [-0.1, 0.02, 0.05], angular_velocity: [3, 1, 0]}
   pen: {shape: {cylinder: [0.008, 0.1]}, mass: 0.02, orientation: {axis: y, angle: 15 deg}, position: [1.0, 0, 0.022], angular_velocity: [0, 0, 5]}
-contacts: {default: {friction: 0.3}}
+contacts: {default: {law: barrier, friction: 0.3}}
 analysis: {duration: 0.2 s, step: 1 ms}
 )",
                              "triangles.yaml");
