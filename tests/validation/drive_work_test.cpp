@@ -62,11 +62,13 @@ TEST(DriveWork, OfAWallIsItsImpulseTimesItsSpeed) {
       const Outcome o = run(wall("", e), h, "wall.motion", "ball");
       const std::string at = format("e {} h {} ms", e, h);
       const double p = o.v.x();
+      // The wall's reaction has the rounding of second differences, a random sum over the steps.
+      const double close = h < 0.1 ? 1e-8 : 1e-9;
       EXPECT_NEAR(p, 1.0 + e, 1e-9) << at;
-      EXPECT_NEAR(o.impulse.x(), p, 1e-9) << at;
-      EXPECT_NEAR(o.drive, p, 1e-9) << at;
-      EXPECT_NEAR(o.balance.put_in, p, 1e-9) << at;
-      EXPECT_NEAR(o.balance.dissipated, 0.5 * (1.0 - e * e), 1e-9) << at;
+      EXPECT_NEAR(o.impulse.x(), p, close) << at;
+      EXPECT_NEAR(o.drive, p, close) << at;
+      EXPECT_NEAR(o.balance.put_in, p, close) << at;
+      EXPECT_NEAR(o.balance.dissipated, 0.5 * (1.0 - e * e), close) << at;
     }
 }
 
