@@ -24,6 +24,7 @@ STYLES = {  # of the curve of each order
     "2": dict(color="#7a7a7a", marker="o"), "4": dict(color="#2f8f5b", marker="s"),
     "6": dict(color="#1f5fa8", marker="^"), "8": dict(color="#b03a2e", marker="D"),
     "automatic": dict(color="#1f5fa8", marker="x", linestyle=":")}
+BESIDE_PEERS = {"pendulum", "n_four_bar_40", "andrews_squeezer", "heavy_top", "chain_10"}  # sections by benchmarks/peers
 PEER_MARKERS = {"Exudyn 1.11": "P", "MuJoCo": "*", "Simbody": "X", "Chrono": "p"}
 
 
@@ -60,7 +61,7 @@ def precision_sections(results):
     """A section for each case that was run: picture, table of Polhode, table of other programs."""
     text = []
     for case, (title, compared) in report.CASES.items():
-        if not results.of("work_precision", case=case):
+        if case in BESIDE_PEERS or not results.of("work_precision", case=case):
             continue
         picture = draw(results, case)
         text += [f"### {title}", f"![Error against CPU time](images/{picture.name})",

@@ -155,6 +155,14 @@ class Tables(unittest.TestCase):
         self.assertIn("best error 3e-01", text)
         self.assertIn("no run succeeded", text)
 
+    def test_a_program_without_runs_has_a_row(self) -> None:
+        results = {"programs": [head("Polhode", "1"), head("Pinocchio", "4")], "runs": [run_line("a", 0.1, 1e-7, 0.02)]}
+        self.assertIn("no run ended in its time", table.work_table(results, "pendulum"))
+
+    def test_the_best_error_of_a_method_is_that_of_its_finest_run(self) -> None:
+        runs = [run_line("a", 0.4, 1e-9, 0.001), run_line("a", 0.1, 1e-5, 0.004)]
+        self.assertEqual(table.finest(runs)["error"], 1e-5)
+
     def test_a_section_is_replaced_between_its_comments_only(self) -> None:
         text = "a\n<!-- x: written by benchmarks/peers -->\nold\n<!-- end of x -->\nb\n"
         new = page.replaced(text, "x", "new")

@@ -49,6 +49,7 @@ def options() -> argparse.Namespace:
         "--most-seconds", type=float, default=0.5, help="processor time of the longest run that is tried"
     )
     parser.add_argument("--wall", type=float, default=90.0, help="seconds after which a program's runs of a case end")
+    parser.add_argument("--jobs", type=int, default=1, help="programs that run at the same time; 1 on a quiet machine")
     parser.add_argument("--page", action="store_true", help="do not run: tables and pictures from the results")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     return parser.parse_args()
@@ -71,6 +72,7 @@ def main() -> int:
             told.rounds,
             told.most_seconds,
             told.wall,
+            told.jobs,
             told.results,
         )
     page.update(told.results, ROOT)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import collections
+import concurrent.futures
 import datetime
 import json
 import os
@@ -56,28 +57,31 @@ def work(program: str, case: str, most: float, points: list[tuple[str, float]] |
         return [json.loads(line[7:]) for line in told if line.startswith("RESULT ")]
 
 
-def measure(programs: list[str], cases: list[str], rounds: int, most: float, wall: float, path: pathlib.Path) -> None:
+def measure(
+    programs: list[str], cases: list[str], rounds: int, most: float, wall: float, jobs: int, path: pathlib.Path
+) -> None:
     """The first round of a case finds the runs, the others repeat them. Results are written after each case."""
-    facts = machine() | {"rounds": rounds}
+    facts = machine() | {"rounds": rounds, "jobs": jobs}
     heads: dict[tuple[str, str], Line] = {}
     first: dict[tuple[str, str, str, float], Line] = {}
     times: dict[tuple[str, str, str, float], list[float]] = collections.defaultdict(list)
     for case in cases:
         for turn in range(rounds):
-            for program in programs:
-                points = None
-                if turn > 0:
-                    points = [(k[2], k[3]) for k, line in first.items() if k[:2] == (program, case) and "error" in line]
-                    if not points:
-                        continue
-                for line in work(program, case, most, points, wall):
-                    if "method" not in line:
-                        heads[program, case] = line
-                        continue
-                    key = (program, case, line["method"], line["value"])
-                    first.setdefault(key, line)
-                    if "cpu_s" in line:
-                        times[key].append(line["cpu_s"])
+            plans: dict[str, list[tuple[str, float]] | None] = dict.fromkeys(programs)
+            if turn > 0:
+                for program in programs:
+                    done = [k for k, line in first.items() if k[:2] == (program, case) and "error" in line]
+                    plans[program] = [(k[2], k[3]) for k in done]
+            with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+                told = pool.map(lambda item: work(item[0], case, most, item[1], wall), plans.items())  # noqa: B023
+            for line in (line for lines in told for line in lines):
+                if "method" not in line:
+                    heads[line["program"], case] = line
+                    continue
+                key = (line["program"], case, line["method"], line["value"])
+                first.setdefault(key, line)
+                if "cpu_s" in line:
+                    times[key].append(line["cpu_s"])
             print(f"{case}: round {turn + 1} of {rounds}", flush=True)
         facts["load_after"] = round(os.getloadavg()[0], 1)
         runs = [line | summary(times[key]) for key, line in first.items()]

@@ -44,13 +44,17 @@ class Drake:
     def remarks(self, mechanism: Mechanism) -> str:
         if mechanism.loops():
             return "loops by ball constraints, which only its discrete plant has"
-        return "a ball joint by angles" if any(j.kind == "spherical" for j in mechanism.joints) else ""
+        return (
+            "a ball joint by angles, near whose singular position the top passes"
+            if any(j.kind == "spherical" for j in mechanism.joints)
+            else ""
+        )
 
     def methods(self, mechanism: Mechanism) -> tuple[Method, ...]:
         if mechanism.loops():
             first = mechanism.duration / (100.0 if mechanism.duration < 0.1 else 400.0)
             return (Method(DISCRETE, "step", halved(first, 12)),)
-        names = ("runge_kutta3", "runge_kutta5", "radau3")
+        names = (*(("radau3",) if mechanism.dissipates() else ()), "runge_kutta3", "runge_kutta5")
         return tuple(Method(name, "tolerance", TOLERANCES) for name in names)
 
     def run(self, mechanism: Mechanism, method: Method, value: float) -> Outcome:

@@ -20,12 +20,17 @@ from exudyn.utilities import (  # noqa: E402
 )
 from exudyn_tree import build_tree, read_tree  # noqa: E402
 from mechanism import GROUND, Joint, Mechanism, Vector, cross, frame_with_x, minus, transposed  # noqa: E402
-from program import Method, Outcome, halved, steps_of, timed  # noqa: E402
+from program import Method, Outcome, explicit_steps, halved, steps_of, timed  # noqa: E402
 
 ALPHA, TRAPEZOIDAL = "generalised-alpha, rho_inf = 0.9", "trapezoidal, index 2"
 RK = "RK67 on a kinematic tree"
 # Locked rotations of each joint about its own axes, whose first is the axis of the joint.
 LOCKED = {"revolute": (1, 1, 1, 0, 1, 1), "prismatic": (0, 1, 1, 1, 1, 1), "spherical": (1, 1, 1, 0, 0, 0)}
+
+
+def as_tree(mechanism: Mechanism) -> bool:
+    """Whether a kinematic tree can express a mechanism for explicit methods."""
+    return not any(joint.closes or joint.kind == "spherical" for joint in mechanism.joints)
 
 
 class Exudyn:
@@ -38,12 +43,21 @@ class Exudyn:
         return ""
 
     def remarks(self, mechanism: Mechanism) -> str:
-        return "planar bodies and joints" if mechanism.planar else "Euler parameters"
+        told = "planar bodies and joints" if mechanism.planar else "Euler parameters"
+        if mechanism.loops():
+            return told + "; explicit methods have no loops"
+        if not as_tree(mechanism):
+            return (
+                told + "; a kinematic tree has no ball joint, and the top passes the singular position of three hinges"
+            )
+        return told
 
     def methods(self, mechanism: Mechanism) -> tuple[Method, ...]:
         first = mechanism.duration / (100.0 if mechanism.duration < 0.1 else 400.0)
-        names = (ALPHA, TRAPEZOIDAL) if mechanism.loops() else (ALPHA, TRAPEZOIDAL, RK)
-        return tuple(Method(name, "step", halved(first, 14)) for name in names)
+        found = [Method(name, "step", halved(first, 14)) for name in (ALPHA, TRAPEZOIDAL)]
+        if as_tree(mechanism):
+            found.append(Method(RK, "step", explicit_steps(mechanism.duration, mechanism.dissipates(), 10)))
+        return tuple(found)
 
     def run(self, mechanism: Mechanism, method: Method, value: float) -> Outcome:
         container = exu.SystemContainer()

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 from mechanism import GROUND, Joint, Mechanism, Vector, minus
-from program import Method, Outcome, halved, steps_of, timed
+from program import Method, Outcome, explicit_steps, steps_of, timed
 
 RK4 = "RK4 in Python"
 
@@ -33,8 +33,7 @@ class Pinocchio:
         )
 
     def methods(self, mechanism: Mechanism) -> tuple[Method, ...]:
-        first = mechanism.duration / (100.0 if mechanism.duration < 0.1 else 400.0)
-        return (Method(RK4, "step", halved(first, 10)),)
+        return (Method(RK4, "step", explicit_steps(mechanism.duration, mechanism.dissipates(), 10)),)
 
     def run(self, mechanism: Mechanism, method: Method, value: float) -> Outcome:
         steps = steps_of(mechanism.duration, value)

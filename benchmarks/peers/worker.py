@@ -79,7 +79,6 @@ def main(name: str, case: str, most: float, points: list[tuple[str, float]] | No
                     "cpu_s": outcome.cpu,
                     "steps": outcome.steps,
                     "iterations": outcome.iterations,
-                    "whole_s": outcome.whole,
                 }
             )
             if points is None and (2.0 * outcome.cpu > most or distance < FINEST):
