@@ -348,7 +348,8 @@ def fit(
     bounds:     (lowest, highest) by path, None for none.
     jacobian:   "differences" of runs; "exact": tangents of one run, as polhode.gradient; "adjoint": the exact
                 derivative of the sum of squares by one adjoint, for many parameters, with L-BFGS-B. The exact ones
-                are for positions and velocities of bodies and coordinates of joints, with a fixed step.
+                are for positions and velocities of bodies and coordinates of joints; automatic steps are those of
+                the present parameters.
     deviations: standard deviations of measured values by channel, by which residuals are divided, of all channels or
                 none: then residuals are divided by the spread of each channel's values, and the errors of the estimates
                 follow from the residuals of each channel.

@@ -152,14 +152,16 @@ def gradient(
     forward: Optional[bool] = None,
     error_bars: bool = True,
 ) -> "Union[Gradient, list[Gradient]]":
-    """Runs a model and differentiates the run: exact for its steps, whose lengths are kept.
+    """Runs a model and differentiates the run: exact for its steps, whose lengths are kept. Automatic steps, with
+    their lengths and orders, are those of this run: the sequence is frozen.
 
     of:         an outcome, or several: "bodies.rod.position.x@end", "probes.tip.vx@max", "joints.A.rz@mean",
-                "bodies.rod.velocity.z@0.25" at a time [s] at which a step ends. Without @ the end.
+                "bodies.rod.velocity.z@0.25" at a time [s] at which a fixed step ends; automatic ones end there.
+                Without @ the end.
     wrt:        parameters by path, as overrides: "bodies.rod.mass", "variables.L", "joints.A.at.0".
     forward:    tangents of all parameters instead of the adjoint of each outcome: the same numbers. None: if there
                 are more outcomes than parameters.
-    error_bars: also run with half the step.
+    error_bars: also run with half the step, or with each automatic step as two of half its length.
 
     Returns a Gradient, or a list of them for a list of outcomes. Derivatives are per unit of the number in the model,
     in SI if it has a unit there. Doubts, as in chaotic motions, are warnings. Raises ModelError for models, parameters

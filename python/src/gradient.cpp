@@ -19,7 +19,7 @@ Differentiated gradient_of(const io::ModelText& source, const std::vector<std::s
                            const std::vector<std::string>& wrt, bool forward, bool bars,
                            bool only_last_adjoint, const std::vector<double>& weights) {
   Differentiated d;
-  Model model = io::read_model_text(source.text, source.file, source.overrides);
+  const Model model = io::read_model_text(source.text, source.file, source.overrides);
   d.request.forward = forward;
   d.request.only_last_adjoint = only_last_adjoint;
   d.request.weights = weights;
@@ -28,8 +28,7 @@ Differentiated gradient_of(const io::ModelText& source, const std::vector<std::s
   for (const std::string& outcome : of) d.request.outcomes.push_back(parse_outcome(outcome));
   d.run = located(io::ModelPlaces(model), [&] { return differentiate(model, d.request); });
   if (!bars) return d;
-  model.analysis.step = 0.5 * *model.analysis.step;
-  d.bars = error_bars(d.run, differentiate(model, d.request));
+  d.bars = error_bars(d.run, differentiate_halves(model, d.request, d.run));
   return d;
 }
 

@@ -3,6 +3,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import polhode
@@ -37,8 +38,6 @@ def test_gradient_is_that_of_differences_of_runs(pendulum: polhode.Model) -> Non
 
 
 def test_what_has_no_gradient_is_refused_by_name(pendulum: polhode.Model) -> None:
-    with pytest.raises(polhode.ModelError, match="analysis.step.*is automatic"):
-        polhode.gradient(pendulum, "bodies.arm.position.z", "gravity.2", overrides={"analysis.step": "auto"})
     with pytest.raises(polhode.ModelError, match="gravity.7.*is not in the model"):
         polhode.gradient(pendulum, "bodies.arm.position.z", "gravity.7")
     pendulum.add_load("push", "force", body="arm", at=[1, 0, 0], force=lambda t: [0, 0, t])
@@ -50,3 +49,59 @@ def test_a_chaotic_gradient_warns() -> None:
     m = make_chain()
     with pytest.warns(UserWarning, match="no property of the motion"):
         polhode.gradient(m, "bodies.b2.position.z", "gravity.2")
+
+
+TOLERANCES = (1e-4, 1e-6, 1e-8)
+
+
+def swing(tolerance: float, **output: float) -> polhode.Model:
+    """A cart on a spring and a damper along x."""
+    m = polhode.Model(variables={"k": 50, "c": 1.5}, analysis={"duration": 1, "tolerance": tolerance}, output=output)
+    m.add_body("cart", mass=2, inertia=[1, 1, 1], position=[0.1, 0, 0])
+    m.add_joint("guide", "prismatic", bodies=["ground", "cart"], at=[0, 0, 0], axis="x")
+    m.add_load("spring", "translational_spring", joint="guide", stiffness="k", damping="c", free_displacement=-0.1)
+    return m
+
+
+def swung(t: float, k: float = 50, c: float = 1.5) -> float:
+    """Its place in closed form."""
+    decay = c / 4
+    rate = math.sqrt(k / 2 - decay**2)
+    return 0.1 * math.exp(-decay * t) * (math.cos(rate * t) + decay / rate * math.sin(rate * t))
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_gradients_of_automatic_steps_tend_to_the_closed_form(tolerance: float) -> None:
+    m = swing(tolerance)
+    by_k = (swung(0.7, 50 + 1e-4) - swung(0.7, 50 - 1e-4)) / 2e-4
+    by_c = (swung(0.7, 50, 1.5 + 1e-5) - swung(0.7, 50, 1.5 - 1e-5)) / 2e-5
+    g = polhode.gradient(m, "bodies.cart.position.x@0.7", ["variables.k", "variables.c"])
+    assert g.time == pytest.approx(0.7, abs=1e-14) and g.check < 1e-11
+    assert g.by["variables.k"] == pytest.approx(by_k, rel=10 * tolerance, abs=2 * g.error["variables.k"])
+    assert g.by["variables.c"] == pytest.approx(by_c, rel=10 * tolerance, abs=2 * g.error["variables.c"])
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_adjoints_of_automatic_steps_are_the_transpose_of_their_tangents(tolerance: float) -> None:
+    r = polhode.run(swing(tolerance), progress=False)
+    channel = "bodies.cart.position"
+    change = r.push_forward({"variables.k": 2.0, "variables.c": -0.1}, [channel])[channel]
+    weights = np.cos(np.arange(change.size)).reshape(change.shape)
+    slopes = r.pull_back({channel: weights}, ["variables.k", "variables.c"])
+    along = 2.0 * slopes["variables.k"] - 0.1 * slopes["variables.c"]
+    assert along == pytest.approx(float(np.sum(weights * change)), rel=1e-10)
+    assert np.max(np.abs(change)) > 1e-4
+
+
+def test_fits_with_automatic_steps_find_what_the_data_were_made_with() -> None:
+    t = np.linspace(0, 1, 60)
+    data = {"time": t, "bodies.cart.position.x": np.array([swung(x, 42, 1.1) for x in t])}
+    for jacobian in ("exact", "adjoint"):
+        found = polhode.fit(swing(1e-9, every=0.01), data, {"variables.k": 50, "variables.c": 1.5}, jacobian=jacobian)
+        assert found.parameters["variables.k"] == pytest.approx(42, rel=1e-5)
+        assert found.parameters["variables.c"] == pytest.approx(1.1, rel=1e-4)
+
+
+def test_designs_with_automatic_steps_meet_their_target() -> None:
+    best = polhode.minimize(swing(1e-8), {"bodies.cart.position.x@0.5": swung(0.5, 44)}, {"variables.k": 50})
+    assert best.parameters["variables.k"] == pytest.approx(44, rel=1e-6)

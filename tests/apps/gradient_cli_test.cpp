@@ -34,6 +34,27 @@ TEST_F(CommandLine, PrintsGradientsAsJson) {
   }
 }
 
+TEST_F(CommandLine, SaysThatTheSequenceOfAutomaticStepsIsFrozen) {
+  write("swing.yaml",
+        "format: 1\nbodies:\n"
+        "  cart: {mass: 2, inertia: [1, 1, 1], position: [0.1, 0, 0], velocity: [0, 1, 0]}\n"
+        "loads:\n  strut: {type: spring_damper, bodies: [ground, cart], at: [[0, 1, 0], [0.1, 0, "
+        "0]], stiffness: 50, damping: 2}\n"
+        "analysis: {duration: 0.5 s, tolerance: 1e-7}\n");
+  const auto result = run({"gradient", "swing.yaml", "--of", "bodies.cart.position.x@0.3", "--with",
+                           "loads.strut.stiffness"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  for (const char* text : {" automatic steps of ", "single ones), order",
+                           "the sequence of their lengths and orders is frozen", "at 0.3 s"})
+    EXPECT_THAT(result.out, HasSubstr(text));
+  const auto json = run({"gradient", "swing.yaml", "--json", "--of", "bodies.cart.position.x",
+                         "--with", "loads.strut.stiffness"});
+  EXPECT_EQ(value(json.out, "step"), "null");
+  EXPECT_GT(std::stod(value(json.out, "longest_step")),
+            std::stod(value(json.out, "shortest_step")));
+  EXPECT_GE(std::stoi(value(json.out, "highest_order")), std::stoi(value(json.out, "order")));
+}
+
 TEST_F(CommandLine, RefusesAGradientByNameWithExitCode3) {
   const auto result = run({"gradient", "model.yaml", "--set", "analysis.momentum_rate=kinematic",
                            "--of", "probes.tip.z", "--with", "gravity.2"});

@@ -61,11 +61,6 @@ TEST(RequireDifferentiable, AcceptsThePendulumOfTheseTests) {
 }
 
 TEST(RequireDifferentiable, RefusesSettingsByName) {
-  EXPECT_THAT(refusal_of({.analysis = "tolerance: 1e-6"}),
-              HasSubstr("analysis.step: is automatic: the lengths of the steps would depend on the "
-                        "parameters. Give a fixed step for a gradient"));
-  EXPECT_THAT(refusal_of({.analysis = "step: 10 ms, method: extrapolation, order: 4"}),
-              HasSubstr("analysis.method: is extrapolation, which has no gradient yet"));
   EXPECT_THAT(refusal_of({.analysis = "step: 10 ms, momentum_rate: kinematic"}),
               HasSubstr("analysis.momentum_rate: is kinematic"));
   EXPECT_THAT(refusal_of({.analysis = "step: 10 ms, jacobian: every_step"}),
@@ -96,8 +91,9 @@ TEST(RequireDifferentiable, RefusesStopsFrictionAndSpringsOfJointsByName) {
 }
 
 TEST(RequireDifferentiable, RefusesContactsEventsAndControllersByName) {
-  EXPECT_THAT(refusal_of({.more = "contacts: {}\n", .shape = ", shape: {sphere: 0.1}"}),
-              HasSubstr("contacts: make the gradient of a run on fixed steps a wrong number"));
+  EXPECT_THAT(
+      refusal_of({.more = "contacts: {}\n", .shape = ", shape: {sphere: 0.1}"}),
+      HasSubstr("contacts: make the gradient of a run whose steps are kept a wrong number"));
   EXPECT_THAT(
       refusal_of(
           {.more = "events:\n  low: {when: {body: rod, channel: z, below: -0.4}, stop: true}\n"}),
@@ -178,6 +174,36 @@ TEST(RequireDifferentiable, RefusesDrivesWhoseVelocityJumps) {
       refusal_of(
           {.loads = "  drive: {type: rotary_motor, joint: hinge, angle: 'max(0, t - 0.045)'}\n"}),
       HasSubstr("bodies.rod: has a velocity that jumps at t = "));
+}
+
+TEST(RequireDifferentiable, RefusesDrivesWhoseVelocityJumpsInAutomaticAndExtrapolatedSteps) {
+  for (const char* analysis :
+       {"tolerance: 1e-4, order: 2", "tolerance: 1e-7", "tolerance: 1e-6, method: extrapolation"})
+    EXPECT_THAT(refusal_of({.loads = "  drive: {type: rotary_motor, joint: hinge, angle: "
+                                     "'max(0, t - 0.045)'}\n",
+                            .analysis = analysis}),
+                HasSubstr("bodies.rod: has a velocity that jumps at t = "))
+        << analysis;
+}
+
+TEST(RequireDifferentiable, RefusesEventsStopsAndContactsInAutomaticSteps) {
+  const std::string automatic = "tolerance: 1e-6";
+  EXPECT_THAT(refusal_of({.of_joint = ", limits: {lower: -2, upper: 2}", .analysis = automatic}),
+              HasSubstr("joints.hinge: has stops: where an impact falls within a step"));
+  Entries event{.analysis = automatic};
+  event.more = "events:\n  low: {when: {body: rod, channel: z, below: -0.4}, stop: true}\n";
+  EXPECT_THAT(refusal_of(event),
+              HasSubstr("events.low: is within a step whose length depends on the parameters"));
+  Entries contact{.analysis = automatic, .more = "contacts: {}\n"};
+  contact.shape = ", shape: {sphere: 0.1}";
+  EXPECT_THAT(
+      refusal_of(contact),
+      HasSubstr("contacts: make the gradient of a run whose steps are kept a wrong number"));
+}
+
+TEST(RequireDifferentiable, AcceptsAutomaticAndExtrapolatedSteps) {
+  EXPECT_EQ(refusal_of({.analysis = "tolerance: 1e-6"}), "nothing");
+  EXPECT_EQ(refusal_of({.analysis = "step: 10 ms, method: extrapolation, order: 4"}), "nothing");
 }
 
 TEST(GradientParameters, AreRefusedByNameIfTheyAreNoNumbers) {
@@ -297,6 +323,9 @@ TEST(Outcomes, AreRefusedByNameIfTheyAreNoPositionsOrVelocities) {
               HasSubstr("the outcome: 'bodies.rod.position.z@last' has an unknown time 'last'"));
   EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rod.position.z@0.033"),
               HasSubstr("is at 0.033 s, where no step ends. Name a multiple of analysis.step"));
+  EXPECT_THAT(
+      refusal_of({.analysis = "tolerance: 1e-6"}, "bodies.rod.mass", "bodies.rod.position.z@0.2"),
+      HasSubstr("is at 0.2 s, where no step ends. Name a time within the run"));
   EXPECT_THAT(refusal_of({}, "bodies.rod.mass", "bodies.rod.velocity.z@mean"),
               HasSubstr("is a mean of velocities"));
 }

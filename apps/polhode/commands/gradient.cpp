@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -60,6 +62,35 @@ std::string gradient_table(const GradientRequest& request, const OutcomeGradient
          format("  growth {:.3g}, tangent against adjoint {:.0e}\n", g.growth, g.spot_check);
 }
 
+/// Lengths and orders of the steps of a run.
+struct StepRange {
+  double shortest = 0.0, longest = 0.0;  ///< [s]
+  int highest_order = 2;
+  explicit StepRange(const RunGradient& run) : highest_order(run.order) {
+    for (const TakenStep& step : run.sequence) {
+      shortest = shortest > 0.0 ? std::min(shortest, step.length) : step.length;
+      longest = std::max(longest, step.length);
+      highest_order = std::max(highest_order, 2 * step.members);
+    }
+  }
+};
+
+/// What is kept, in words.
+std::string steps_text(const RunGradient& run) {
+  const StepRange range(run);
+  const auto whole = static_cast<std::int64_t>(run.sequence.size());
+  const std::string single = run.steps > whole ? format(" ({} single ones)", run.steps) : "";
+  if (run.step > 0.0)
+    return format("{} steps of {}{}, kept as they are", whole, seconds(run.step), single);
+  const std::string orders = range.highest_order > run.order
+                                 ? format("orders {} to {}", run.order, range.highest_order)
+                                 : format("order {}", run.order);
+  return format(
+      "{} automatic steps of {} to {}{}, {}: the sequence of their lengths and orders is "
+      "frozen",
+      whole, seconds(range.shortest), seconds(range.longest), single, orders);
+}
+
 GradientJson gradient_json(const GradientRequest& request, const RunGradient& run,
                            const std::vector<std::vector<double>>& bars,
                            const std::vector<std::string>& doubts) {
@@ -86,9 +117,14 @@ GradientJson gradient_json(const GradientRequest& request, const RunGradient& ru
                         {"tangent_against_adjoint", g.spot_check},
                         {"by", list}});
   }
-  return {{"step", run.step},
+  const StepRange range(run);
+  return {{"step", run.step > 0.0 ? GradientJson(run.step) : GradientJson(nullptr)},
+          {"shortest_step", range.shortest},
+          {"longest_step", range.longest},
           {"order", run.order},
+          {"highest_order", range.highest_order},
           {"steps", run.steps},
+          {"whole_steps", run.sequence.size()},
           {"run_time_s", run.run_seconds},
           {"gradient_time_s", run.gradient_seconds},
           {"warnings", doubts},
@@ -98,17 +134,14 @@ GradientJson gradient_json(const GradientRequest& request, const RunGradient& ru
 
 int show_gradient(GradientOptions& options) {
   const io::ModelText source = io::model_text_of(options.model.file, options.model.overrides);
-  Model model = load_model(options.model);
+  const Model model = load_model(options.model);
   GradientRequest request{.parameters = {}, .outcomes = {}, .forward = options.forward};
   for (const std::string& path : split_paths(options.with))
     request.parameters.push_back(io::gradient_parameter(source, path));
   for (const std::string& outcome : options.of) request.outcomes.push_back(parse_outcome(outcome));
   const RunGradient run = differentiate(model, request);
   std::vector<std::vector<double>> bars;
-  if (!options.no_bars) {
-    model.analysis.step = 0.5 * *model.analysis.step;
-    bars = error_bars(run, differentiate(model, request));
-  }
+  if (!options.no_bars) bars = error_bars(run, differentiate_halves(model, request, run));
   std::vector<std::string> doubts;
   for (std::size_t k = 0; k < run.outcomes.size(); ++k)
     for (std::string& doubt :
@@ -120,9 +153,8 @@ int show_gradient(GradientOptions& options) {
     for (std::size_t k = 0; k < run.outcomes.size(); ++k)
       print((k > 0 ? "\n" : "") + gradient_table(request, run.outcomes[k],
                                                  bars.empty() ? std::vector<double>{} : bars[k]));
-    print(format("  {} {} of {}, kept as they are: run {}, gradient {}\n", run.steps,
-                 run.order > 2 ? "stages of steps" : "steps", seconds(run.step),
-                 seconds(run.run_seconds), seconds(run.gradient_seconds)));
+    print(format("  {}: run {}, gradient {}\n", steps_text(run), seconds(run.run_seconds),
+                 seconds(run.gradient_seconds)));
   }
   for (const std::string& doubt : doubts) say("warning: " + doubt);
   return kOk;

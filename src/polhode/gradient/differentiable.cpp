@@ -6,7 +6,6 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/gradient/differentiable.hpp>
-#include <polhode/simulation/order_choice.hpp>
 
 namespace polhode {
 
@@ -36,17 +35,10 @@ constexpr std::array<std::string_view, 16> kDifferentiable = {"force",
   throw InputError(where, what, hint);
 }
 
-void check_settings(const AnalysisSpec& a, bool extrapolated) {
+void check_settings(const AnalysisSpec& a) {
   if (a.type != "dynamics")
     refuse_gradient("analysis.type", format("is {}, but gradients are those of a motion", a.type),
                     "Use type: dynamics");
-  if (!a.step)
-    refuse_gradient("analysis.step",
-                    "is automatic: the lengths of the steps would depend on the parameters",
-                    "Give a fixed step for a gradient");
-  if (extrapolated)
-    refuse_gradient("analysis.method", "is extrapolation, which has no gradient yet",
-                    "Use order: 2, or a composition of order 4, 6 or 8");
   if (a.momentum_rate != "momentum")
     refuse_gradient(
         "analysis.momentum_rate",
@@ -110,11 +102,11 @@ void check_load(const LoadSpec& load) {
 }  // namespace
 
 void require_differentiable(const Model& model, const System& system) {
-  check_settings(model.analysis, choose_order(system, model).extrapolated);
+  check_settings(model.analysis);
   if (model.contacts.present || system.contacts())
     refuse_gradient("contacts",
-                    "make the gradient of a run on fixed steps a wrong number: where an impact "
-                    "falls within a step depends on the parameters",
+                    "make the gradient of a run whose steps are kept a wrong number: where an "
+                    "impact falls within a step depends on the parameters",
                     "Leave contacts out, or compare runs");
   if (!model.events.empty())
     refuse_gradient(format("events.{}", model.events.front().name),

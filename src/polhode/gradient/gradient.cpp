@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <Eigen/Sparse>
@@ -13,7 +14,7 @@
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/gradient/parameter_shift.hpp>
 #include <polhode/gradient/run_tape.hpp>
-#include <polhode/gradient/step_derivative.hpp>
+#include <polhode/gradient/whole_step_derivative.hpp>
 #include <polhode/newton/rank_report.hpp>
 #include <polhode/simulation/order_choice.hpp>
 #include <polhode/simulation/simulation_details.hpp>
@@ -22,11 +23,6 @@ namespace polhode {
 
 namespace {
 
-/// Part of a body's forces that the step seen backwards may lack: round-off of stiff forces is
-/// 1e-10 of them, a law that is not symmetric has parts of order of the step.
-constexpr double kSymmetric = 1e-6;
-/// Difference of a velocity from that of its step, as a part of the speed, that is a jump.
-constexpr double kJumped = 1e-5;
 /// Remainder of a linear system of a step above which it has no solution: geometry that breaks a
 /// loop leaves 1e-2 or more, all else 1e-14.
 constexpr double kUnsolved = 1e-8;
@@ -42,20 +38,29 @@ struct Place {
   double weight = 1.0;
 };
 
+/// Ends of a tape at which an outcome is read.
 std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader,
-                             const System& system, const RunTape& tape, double step) {
-  const auto t = [&](std::size_t end) { return tape.states[tape.ends[end]].t; };
+                             const Simulation& simulation, const RunTape& tape) {
+  const auto t = [&](std::size_t end) { return tape.ends[end].t; };
   const std::size_t last = tape.ends.size() - 1;
   switch (outcome.at) {
     case Outcome::At::end:
-      return {{tape.ends[last], 1.0}};
-    case Outcome::At::time:
-      for (std::size_t k = 0; k <= last; ++k)
-        if (std::abs(t(k) - outcome.time) <= kSameInstant * step) return {{tape.ends[k], 1.0}};
+      return {{last, 1.0}};
+    case Outcome::At::time: {
+      const auto above =
+          std::upper_bound(tape.ends.begin(), tape.ends.end(), outcome.time,
+                           [](double time, const State& state) { return time < state.t; });
+      const auto next = static_cast<std::size_t>(above - tape.ends.begin());
+      for (const std::size_t k : {next, next - 1})
+        if (k <= last &&
+            std::abs(t(k) - outcome.time) <= kSameInstant * tape.sequence[k > 0 ? k - 1 : 0].length)
+          return {{k, 1.0}};
       throw InputError(
           "the outcome",
           format("'{}' is at {:.9g} s, where no step ends", outcome.text, outcome.time),
-          "Name a multiple of analysis.step within the run");
+          simulation.model().analysis.step ? "Name a multiple of analysis.step within the run"
+                                           : "Name a time within the run");
+    }
     case Outcome::At::mean: {
       if (reader.of_velocity())
         throw InputError("the outcome", format("'{}' is a mean of velocities", outcome.text),
@@ -64,7 +69,7 @@ std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader
       for (std::size_t k = 0; k <= last; ++k) {
         const double before = k > 0 ? t(k) - t(k - 1) : 0.0;
         const double after = k < last ? t(k + 1) - t(k) : 0.0;
-        list.push_back({tape.ends[k], 0.5 * (before + after) / (t(last) - t(0))});
+        list.push_back({k, 0.5 * (before + after) / (t(last) - t(0))});
       }
       return list;
     }
@@ -75,12 +80,12 @@ std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader
   std::size_t at = 0;
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k <= last; ++k) {
-    const double value = reader.value(system, tape.states[tape.ends[k]]);
+    const double value = reader.value(simulation.system(), tape.ends[k]);
     if (value <= most) continue;
     most = value;
     at = k;
   }
-  return {{tape.ends[at], 1.0}};
+  return {{at, 1.0}};
 }
 
 /// Factors that give the numbers of a state comparable sizes.
@@ -103,12 +108,11 @@ class Differentiation {
         model_(simulation.model()),
         tape_(tape),
         request_(request),
-        derivative_(system_, model_.analysis.rho_inf),
+        derivative_(simulation, tape),
         scales_(state_scales(system_, model_.analysis.duration, derivative_.state_size())) {
     readers_ = readers_of(model_, map, request.outcomes);
     for (std::size_t k = 0; k < readers_.size(); ++k)
-      places_.push_back(
-          places_of(request.outcomes[k], readers_[k], system_, tape, *model_.analysis.step));
+      places_.push_back(places_of(request.outcomes[k], readers_[k], simulation, tape));
     for (const GradientParameter& parameter : request.parameters)
       shifts_.emplace_back(parameter, simulation, map, request.outcomes);
   }
@@ -127,8 +131,8 @@ class Differentiation {
     start_ = Mat::Zero(derivative_.state_size(), static_cast<Eigen::Index>(n));
     for (std::size_t j = 0; j < n; ++j) {
       start_.col(static_cast<Eigen::Index>(j)) =
-          shifts_[j].start_derivative(system_, tape_.states.front());
-      shifts_[j].begin(tape_.states.front());
+          shifts_[j].start_derivative(system_, tape_.ends.front());
+      shifts_[j].begin(tape_.ends.front());
     }
     go_forward();
     go_backward();
@@ -151,7 +155,7 @@ class Differentiation {
     g.by.resize(shifts_.size(), 0.0);
     if (factor == 0.0) return;
     for (const Place& place : places_[k]) {
-      const State& state = tape_.states[place.state];
+      const State& state = tape_.ends[place.state];
       const double weight = factor * place.weight;
       g.value += weight * readers_[k].value(system_, state);
       g.time = std::max(g.time, state.t);
@@ -198,21 +202,6 @@ class Differentiation {
     return found != list.end() && found->state == state ? &*found : nullptr;
   }
 
-  void check_step(std::size_t i) const {
-    const double t = tape_.states[i].t;
-    const auto body = [&](int b) { return system_.bodies()[static_cast<std::size_t>(b)].name; };
-    if (derivative_.jump() > kJumped)
-      throw InputError(format("bodies.{}", body(derivative_.jumped_body())),
-                       format("has a velocity that jumps at t = {:.6g} s", t),
-                       "Use drives without kinks: a jump has no derivative yet");
-    if (derivative_.asymmetry() > kSymmetric)
-      throw InputError(format("bodies.{}", body(derivative_.least_symmetric())),
-                       format("feels a force at t = {:.6g} s that is not symmetric in time: {:.1g} "
-                              "of it differs in the step seen backwards",
-                              t, derivative_.asymmetry()),
-                       "Leave out loads with memory, one after the other, to find it");
-  }
-
   void check_solved() const {
     if (derivative_.defect() <= (model_.analysis.rho_inf < 1.0 ? kUnsolvedDamped : kUnsolved))
       return;
@@ -237,37 +226,10 @@ class Differentiation {
         if (const Weight* w = weight_at(k, state))
           tangent_[k] += tangents.transpose() * w->by_state;
     };
-    const auto ga = GeneralizedAlpha::from_spectral_radius(model_.analysis.rho_inf);
-    std::vector<BodyStep> steps(static_cast<std::size_t>(system_.body_count()) + 1,
-                                BodyStep::ground(ga.alpha_f));
-    std::vector<Eigen::Triplet<double>> entries;
     look(0);
-    for (std::size_t i = 0; i < tape_.lengths.size(); ++i) {
-      const State& from = derivative_.beginning(tape_.states[i], tape_.lengths[i]);
-      const State& to = tape_.states[i + 1];
-      Trial step = derivative_.trial(from, to, tape_.lengths[i]);
-      step.context.conserving = model_.analysis.conserving;
-      step.context.tangents = false;
-      for (int b = 0; b < system_.body_count(); ++b)
-        steps[static_cast<std::size_t>(b)] = body_step(system_, from, step, b);
-      entries.clear();
-      for (std::size_t j = 0; j < shifts_.size(); ++j) {
-        shifts_[j].add_residual(from, step, steps, static_cast<int>(j), entries);
-        shifts_[j].commit(step, steps);
-      }
-      Eigen::SparseMatrix<double> by(derivative_.inputs(), start_.cols());
-      by.setFromTriplets(entries.begin(), entries.end());
-      step.context.tangents = true;
-      derivative_.linearize(from, to, step);
-      check_step(i);
-      const Mat rhs = request_.forward ? Mat(by) : Mat(by * d);
-      for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
-        Vec dy = tangents.col(c);
-        derivative_.push(rhs.col(c), dy);
-        tangents.col(c) = dy;
-      }
+    for (std::size_t i = 0; i < tape_.sequence.size(); ++i) {
+      inputs_.push_back(derivative_.push(i, shifts_, request_.forward ? nullptr : &d, tangents));
       check_solved();
-      residuals_.push_back(std::move(by));
       look(i + 1);
     }
   }
@@ -287,17 +249,9 @@ class Differentiation {
         most[k] = std::max(most[k], mu[k].cwiseProduct(scales_).lpNorm<Eigen::Infinity>());
       }
     };
-    look(tape_.states.size() - 1);
-    for (std::size_t i = tape_.lengths.size(); i-- > 0;) {
-      const State& from = derivative_.beginning(tape_.states[i], tape_.lengths[i]);
-      const State& to = tape_.states[i + 1];
-      Trial step = derivative_.trial(from, to, tape_.lengths[i]);
-      step.context.conserving = model_.analysis.conserving;
-      derivative_.linearize(from, to, step);
-      for (std::size_t k = begin; k < outcomes; ++k) {
-        if (mu[k].isZero(0.0)) continue;
-        by[k] += residuals_[i].transpose() * derivative_.pull(mu[k]);
-      }
+    look(tape_.sequence.size());
+    for (std::size_t i = tape_.sequence.size(); i-- > 0;) {
+      derivative_.pull(i, inputs_[i], mu, by);
       look(i);
     }
     check_solved();
@@ -327,21 +281,34 @@ class Differentiation {
   const Model& model_;
   const RunTape& tape_;
   const GradientRequest& request_;
-  StepDerivative derivative_;
+  WholeStepDerivative derivative_;
   Vec scales_;
   std::vector<OutcomeReader> readers_;
   std::vector<std::vector<Place>> places_;
   std::vector<ParameterShift> shifts_;
   std::vector<std::vector<Weight>> weights_;
-  std::vector<Eigen::SparseMatrix<double>> residuals_;
+  std::vector<WholeStepDerivative::Inputs> inputs_;  ///< By whole step.
   Mat start_;
   std::vector<Vec> tangent_;
   std::vector<OutcomeGradient> gradients_;
 };
 
-}  // namespace
+/// Times at which automatic steps end: those of outcomes, and for means and maxima those of output.
+std::vector<double> stops_of(const Model& model, const GradientRequest& request) {
+  std::vector<double> stops;
+  bool over_run = false;
+  for (const Outcome& outcome : request.outcomes) {
+    if (outcome.at == Outcome::At::time) stops.push_back(outcome.time);
+    over_run = over_run || outcome.at == Outcome::At::mean || outcome.at == Outcome::At::maximum;
+  }
+  if (over_run && model.output.every)
+    for (double k = 1.0; k * *model.output.every < model.analysis.duration; ++k)
+      stops.push_back(k * *model.output.every);
+  std::sort(stops.begin(), stops.end());
+  return stops;
+}
 
-RunGradient differentiate(const Model& model, const GradientRequest& request) {
+void check_request(const GradientRequest& request) {
   if (request.outcomes.empty())
     throw InputError("the outcome", "is missing",
                      "Name a channel, such as bodies.rod.position.x@end");
@@ -349,23 +316,54 @@ RunGradient differentiate(const Model& model, const GradientRequest& request) {
     throw InputError("the parameters", "are missing",
                      "Name paths of the model, such as bodies.rod.mass");
   POLHODE_ASSERT(request.weights.empty() || request.weights.size() == request.outcomes.size());
+}
+
+/// Differentiates the run that a function puts onto a tape.
+RunGradient differentiate_run(const Model& model, const GradientRequest& request,
+                              const std::function<RunTape(Simulation&)>& run) {
   SystemMap map;
   const System system = build_system(model, &map);
   require_differentiable(model, system);
   RunGradient result;
-  result.step = *model.analysis.step;
-  result.order = choose_order(system, model).order;
+  result.step = model.analysis.step.value_or(0.0);
   double at = wall_clock();
   Simulation simulation(model);
-  const RunTape tape = run_onto_tape(simulation);
+  const RunTape tape = run(simulation);
   result.run_seconds = wall_clock() - at;
   at = wall_clock();
-  result.steps = static_cast<std::int64_t>(tape.lengths.size());
+  const OrderChoice choice = choose_order(system, model);
+  result.order = choice.order;
+  for (const TakenStep& step : tape.sequence)
+    if (choice.extrapolated) result.order = std::min(result.order, 2 * step.members);
+  result.steps = tape.single_steps();
+  result.sequence = tape.sequence;
   result.outcomes = Differentiation(simulation, tape, map, request).compute();
   if (model.analysis.rho_inf < 1.0)
-    result.redundant = rank_report(simulation.system(), tape.states.front()).names;
+    result.redundant = rank_report(simulation.system(), tape.ends.front()).names;
   result.gradient_seconds = wall_clock() - at;
   return result;
+}
+
+}  // namespace
+
+RunGradient differentiate(const Model& model, const GradientRequest& request) {
+  check_request(request);
+  return differentiate_run(model, request, [&](Simulation& simulation) {
+    return run_onto_tape(simulation, stops_of(model, request));
+  });
+}
+
+RunGradient differentiate_halves(const Model& model, const GradientRequest& request,
+                                 const RunGradient& run) {
+  check_request(request);
+  if (model.analysis.step) {
+    Model half = model;
+    half.analysis.step = 0.5 * *model.analysis.step;
+    return differentiate(half, request);
+  }
+  return differentiate_run(model, request, [&](Simulation& simulation) {
+    return replay(simulation, halved(run.sequence));
+  });
 }
 
 }  // namespace polhode

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polhode/gradient/outcome.hpp>
+#include <polhode/gradient/step_sequence.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {
@@ -49,19 +50,27 @@ struct OutcomeGradient {
 /// Gradients of the outcomes of a run, exact for its steps.
 struct RunGradient {
   std::vector<OutcomeGradient> outcomes;
-  std::int64_t steps = 0;  ///< Stages, at orders above 2.
-  double step = 0.0;       ///< Length [s].
-  int order = 2;
+  std::int64_t steps = 0;  ///< Single ones: stages and members' steps, at orders above 2.
+  double step = 0.0;       ///< Fixed length [s]; 0: automatic.
+  int order = 2;           ///< The lowest one, if it varies.
+  StepSequence sequence;   ///< The whole steps, which are kept.
   /// Joints with redundant rows, "joint 'elbow'", whose forces at ρ∞ < 1 cost digits.
   std::vector<std::string> redundant;
   double run_seconds = 0.0, gradient_seconds = 0.0;
 };
 
-/// Runs a model with its fixed step, and differentiates that run: tangents and the adjoint of its
-/// own steps, at their solutions. Steps, their lengths and the times of breaks are kept.
+/// Runs a model, and differentiates that run: tangents and the adjoint of its own steps, at their
+/// solutions. Their lengths and orders, where these are automatic too, and the times of breaks are
+/// kept. Automatic steps end at the times of outcomes.
 /// @throws InputError for what has no gradient, see require_differentiable(), and for parameters
 /// that change more than numbers; SolveError for a run that does not end.
 [[nodiscard]] RunGradient differentiate(const Model& model, const GradientRequest& request);
+
+/// The same with half the steps, for error_bars(): of automatic ones each as two of half its
+/// length.
+/// @param run  With the whole steps.
+[[nodiscard]] RunGradient differentiate_halves(const Model& model, const GradientRequest& request,
+                                               const RunGradient& run);
 
 /// Reasons to doubt a gradient, a sentence each: steps that are too long for it, a motion that
 /// forgets its parameters, round-off.

@@ -48,9 +48,9 @@ std::vector<std::string> gradient_doubts(const RunGradient& run, std::size_t out
   if (!wide.empty())
     doubts.push_back(
         format("the gradient of '{}' by {} changes by more than {:.0f} % with half the step: it is "
-               "exact for this run, and no property of the motion. Take a shorter step or a "
-               "shorter run",
-               g.outcome, wide, 100.0 * kWide));
+               "exact for this run, and no property of the motion. Take {} or a shorter run",
+               g.outcome, wide, 100.0 * kWide,
+               run.step > 0.0 || run.sequence.empty() ? "a shorter step" : "a smaller tolerance"));
   if (!run.redundant.empty())
     doubts.push_back(
         format("the gradient of '{}' has about seven digits: where rho_inf is below 1, forces of "

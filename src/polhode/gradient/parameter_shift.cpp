@@ -151,13 +151,6 @@ void ParameterShift::set_items(const System& system, const ChangedItems& changed
   }
 }
 
-template <class Value>
-auto ParameterShift::difference(const Value& of) const {
-  using Number = std::decay_t<decltype(of(at_[0]))>;
-  const Number near = of(at_[0]) - of(at_[1]), far = of(at_[2]) - of(at_[3]);
-  return Number((2.0 / 3.0 * near - 1.0 / 12.0 * far) / step_);
-}
-
 Vec ParameterShift::start_derivative(const System& system, const State& start) const {
   return difference([&](const Neighbour& n) -> Vec {
     Vec y = Vec::Zero(state_size(system, stores_ ? 0.0 : 1.0));

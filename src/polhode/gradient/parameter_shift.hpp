@@ -11,8 +11,10 @@
 
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/gradient/changed_items.hpp>
+#include <polhode/gradient/combination_derivative.hpp>
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/gradient/outcome.hpp>
+#include <polhode/gradient/projection_derivative.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
@@ -41,6 +43,15 @@ class ParameterShift {
                     int column, std::vector<Eigen::Triplet<double>>& entries);
   /// Takes the memories to the end of the step.
   void commit(const Trial& step, std::span<const BodyStep> steps);
+  /// Take the memories through an extrapolated step: each member begins with those at its start,
+  /// the members' ones are combined, and coordinates are those of the projected positions.
+  void begin_member(bool first);
+  void end_member() { keep_memories(); }
+  void combine(const CombinationDerivative& combination);
+  void remember_coordinates(const State& projected);
+  /// Derivative of the inputs of a projection, see stage_inputs(), like add_residual().
+  void add_projection(const std::vector<ProjectionStage>& stages, int column,
+                      std::vector<Eigen::Triplet<double>>& entries);
   /// Derivative of an outcome's value at a fixed state.
   [[nodiscard]] double of_value(std::size_t outcome, const State& state) const;
 
@@ -49,14 +60,21 @@ class ParameterShift {
     std::unique_ptr<Simulation> simulation;
     std::unique_ptr<InteractionSweep> sweep;  ///< Of the interactions that may differ.
     std::vector<double> history, residual;
+    std::vector<std::vector<double>> kept;  ///< Memories at the start and behind each member.
+    Vec terms;                              ///< Of a projection.
     std::vector<OutcomeReader> readers;
   };
   template <class Value>
-  [[nodiscard]] auto difference(const Value& of) const;
+  [[nodiscard]] auto difference(const Value& of) const {
+    using Number = std::decay_t<decltype(of(at_[0]))>;
+    const Number near = of(at_[0]) - of(at_[1]), far = of(at_[2]) - of(at_[3]);
+    return Number((2.0 / 3.0 * near - 1.0 / 12.0 * far) / step_);
+  }
 
   void set_items(const System& system, const ChangedItems& changed);
   /// Whether interactions that count as equal are so, bit for bit.
   [[nodiscard]] bool others_are_equal(const Trial& step, std::span<const BodyStep> steps) const;
+  void keep_memories();
   void evaluate(Neighbour& n, const State& from, const Trial& step,
                 std::span<const BodyStep> steps) const;
 

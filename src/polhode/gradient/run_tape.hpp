@@ -1,21 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include <polhode/dynamics/composition.hpp>
+#include <polhode/gradient/step_sequence.hpp>
+#include <polhode/simulation/method.hpp>
 #include <polhode/simulation/simulation_details.hpp>
+#include <polhode/stepping/extrapolation_table.hpp>
+#include <polhode/stepping/single_step.hpp>
 
 namespace polhode {
 
-/// The steps of a run: the states between them, stages of compositions included.
-struct RunTape {
+/// Equal or composed single steps from the start of a whole step.
+struct TapeMember {
+  std::vector<double> lengths;  ///< [s]
+  /// States after each of them; the last one of a step that is not extrapolated is the end of the
+  /// whole step, and not repeated here.
   std::vector<State> states;
-  std::vector<double> lengths;    ///< Of the steps between the states [s].
-  std::vector<std::size_t> ends;  ///< Indices of the start and of the states that end whole steps.
+};
+
+/// A run: the states between its whole steps, and the single steps within these.
+struct RunTape {
+  std::vector<State> ends;                       ///< The start, and the ends of all whole steps.
+  std::vector<std::vector<TapeMember>> members;  ///< By whole step: one, or those extrapolated.
+  StepSequence sequence;
+
+  /// State after a single step of a whole step.
+  [[nodiscard]] const State& after(std::size_t step, std::size_t member, std::size_t k) const {
+    const std::vector<State>& states = members[step][member].states;
+    return k < states.size() ? states[k] : ends[step + 1];
+  }
+  /// State before it.
+  [[nodiscard]] const State& before(std::size_t step, std::size_t member, std::size_t k) const {
+    return k == 0 ? ends[step] : after(step, member, k - 1);
+  }
+  [[nodiscard]] std::int64_t single_steps() const;
+};
+
+/// Takes given whole steps without step control, and records single steps.
+class TapeRecorder {
+ public:
+  explicit TapeRecorder(const Simulation& simulation);
+
+  [[nodiscard]] const GeneralizedAlpha& method() const { return ga_; }
+  /// Single steps of a whole one. @throws SolveError if one is not accepted.
+  [[nodiscard]] std::vector<TapeMember> record(const State& from, const TakenStep& step);
+  /// Takes a whole step. @throws SolveError if it is not accepted.
+  void take(State& state, const TakenStep& step);
+
+ private:
+  [[nodiscard]] TapeMember chain(const State& from, const std::vector<double>& lengths,
+                                 SingleStep::Predictor predictor, std::size_t kept);
+
+  GeneralizedAlpha ga_;
+  StepControl control_;
+  std::vector<double> stages_{1.0};
+  SingleStep single_;
+  std::unique_ptr<ExtrapolationTable> table_;
 };
 
 /// Runs a simulation from its start to its end.
+/// @param stops  Times at which automatic steps end, in ascending order [s].
 /// @throws SolveError if a step is not accepted; InputError if the states need too much memory.
-[[nodiscard]] RunTape run_onto_tape(Simulation& simulation);
+[[nodiscard]] RunTape run_onto_tape(Simulation& simulation, const std::vector<double>& stops = {});
+
+/// Repeats a sequence of steps from the start of a simulation, whatever their errors are.
+/// @throws SolveError and InputError as run_onto_tape().
+[[nodiscard]] RunTape replay(const Simulation& simulation, const StepSequence& sequence);
+
+/// Each step as two of half the length.
+[[nodiscard]] StepSequence halved(const StepSequence& sequence);
 
 }  // namespace polhode

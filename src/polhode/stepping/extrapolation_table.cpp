@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include <polhode/dynamics/extrapolation.hpp>
 #include <polhode/equations/node_motion.hpp>
@@ -22,6 +23,14 @@ constexpr double kProjectedRates = 1e-10;
 /// Cayley vector of the rotation of a unit quaternion: χ = 2 tan(φ/2) n.
 Vec3 cayley_vector(const Quat& q) { return 2.0 / q.w() * q.vec(); }
 
+/// Whether interactions of a kind remember coordinates at t_n, which follow from positions, and
+/// sums that a step of no length leaves as they are.
+bool remembers_coordinates(const std::string& kind) {
+  constexpr std::array kEndings = {"al_spring", "_motor", "_servo", "gear", "screw", "coupling"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return kind.ends_with(ending); });
+}
+
 /// Weights of members first to end−1 of a table.
 std::vector<double> weights_of(const std::vector<int>& counts, std::size_t first, std::size_t end) {
   return member_weights({counts.begin() + static_cast<std::ptrdiff_t>(first),
@@ -40,10 +49,13 @@ ExtrapolationTable::ExtrapolationTable(const System& system, int order, const Si
       threads_(MemberThreads::make(single, std::min(threads, static_cast<int>(counts_.size())))) {
   // Turns that are counted now and then, and the memories of events and controllers, which a step
   // does not change, are those of one member.
-  for (const InteractionRef& ref : system.interactions()) {
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
     const InteractionTraits& traits = system.traits(ref);
-    if (traits.lazy_history) continue;
+    if (traits.lazy_history || traits.history_size == 0) continue;
     std::fill_n(combined_history_.begin() + ref.first_history, traits.history_size, 1);
+    if (!traits.set_valued && remembers_coordinates(system.group(ref.group).kind()))
+      coordinate_memories_.push_back(i);
   }
 }
 
@@ -110,8 +122,19 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   result_.t = state.t + H;
   std::swap(state, result_);
   if (system_->rows() > 0) report = project(state, report);
-  if (report.converged) bond_nodes(*system_, state);
+  if (!report.converged) return report;
+  bond_nodes(*system_, state);
+  remember_coordinates(state);
   return report;
+}
+
+void ExtrapolationTable::remember_coordinates(State& state) const {
+  for (const int i : coordinate_memories_) {
+    const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(i)];
+    const PairView view = system_->instant(state, ref, state.lambda.data());
+    system_->group(ref.group).commit(ref.item, view.step(),
+                                     state.history.data() + ref.first_history);
+  }
 }
 
 NewtonReport ExtrapolationTable::project(State& state, NewtonReport report) {

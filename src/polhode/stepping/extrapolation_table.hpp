@@ -57,12 +57,16 @@ class ExtrapolationTable {
   double compare_columns(std::size_t last, double H);
   /// Sums of the ledger over the step, by the same weights.
   void combine_ledger(const State& before, std::size_t members, State& out) const;
+  /// Renews memories of coordinates, which the combination of the members' ones misses by the
+  /// step's error.
+  void remember_coordinates(State& state) const;
   /// Puts bodies back onto the constraints, from which the result is off by the step's error.
   NewtonReport project(State& state, NewtonReport report);
 
   const System* system_;
   std::vector<int> counts_;
-  std::vector<char> combined_history_;  ///< By entry of State::history.
+  std::vector<char> combined_history_;    ///< By entry of State::history.
+  std::vector<int> coordinate_memories_;  ///< Interactions that remember coordinates.
   std::vector<State> members_;
   State result_, other_;  ///< The last column and the one before.
   std::unique_ptr<InstantSolver> solver_;

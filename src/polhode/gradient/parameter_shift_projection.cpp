@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A parameter's neighbours in extrapolated steps: memories of members, and projections.
+#include <cmath>
+
+#include <polhode/gradient/parameter_shift.hpp>
+
+namespace polhode {
+
+void ParameterShift::keep_memories() {
+  for (Neighbour& n : at_) n.kept.push_back(n.history);
+}
+
+void ParameterShift::begin_member(bool first) {
+  for (Neighbour& n : at_) {
+    if (first) n.kept.assign(1, n.history);
+    n.history = n.kept.front();
+  }
+}
+
+void ParameterShift::combine(const CombinationDerivative& combination) {
+  for (Neighbour& n : at_) n.history = combination.memory(std::span(n.kept).subspan(1));
+}
+
+void ParameterShift::remember_coordinates(const State& projected) {
+  for (Neighbour& n : at_) {
+    State at = projected;
+    at.history = n.history;
+    const System& system = n.simulation->system();
+    for (const int i : interactions_) {
+      const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
+      const InteractionTraits& traits = system.traits(ref);
+      if (traits.history_size == 0 || traits.lazy_history) continue;
+      const PairView view = system.instant(at, ref, at.lambda.data());
+      system.group(ref.group).commit(ref.item, view.step(), n.history.data() + ref.first_history);
+    }
+  }
+}
+
+void ParameterShift::add_projection(const std::vector<ProjectionStage>& stages, int column,
+                                    std::vector<Eigen::Triplet<double>>& entries) {
+  const int count = stage_inputs(*system_);
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const ProjectionStage& stage = stages[s];
+    ProjectionStage still = stage;  // its rows are g alone
+    still.x.setZero();
+    const double unit_mass = system_->mean_mass();
+    for (Neighbour& n : at_) {
+      const System& system = n.simulation->system();
+      stage_terms(system, stage, n.history, bodies_, *n.sweep, unit_mass, n.terms);
+      if (stage.largest_row < 0) continue;
+      Vec values;
+      stage_terms(system, still, n.history, {}, *n.sweep, unit_mass, values);
+      n.terms[count - 1] =
+          2.0 / stage.largest * values[6 * system.body_count() + stage.largest_row] -
+          std::log(system.mean_mass());
+    }
+    const Vec by = difference([](const Neighbour& n) -> Vec { return n.terms; });
+    for (int i = 0; i < count; ++i)
+      if (by[i] != 0.0) entries.emplace_back(static_cast<int>(s) * count + i, column, by[i]);
+  }
+}
+
+}  // namespace polhode

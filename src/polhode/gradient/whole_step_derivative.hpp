@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Sparse>
+
+#include <polhode/gradient/combination_derivative.hpp>
+#include <polhode/gradient/parameter_shift.hpp>
+#include <polhode/gradient/projection_derivative.hpp>
+#include <polhode/gradient/run_tape.hpp>
+#include <polhode/gradient/step_derivative.hpp>
+
+namespace polhode {
+
+/// The derivative of the whole steps of a tape: of single steps, one after the other, and of
+/// extrapolated ones by their members, the combination of these and its projection.
+class WholeStepDerivative {
+ public:
+  /// Derivatives of inputs by all parameters: of the single steps, member by member, and of the
+  /// projection.
+  using Inputs = std::vector<Eigen::SparseMatrix<double>>;
+
+  WholeStepDerivative(const Simulation& simulation, const RunTape& tape);
+
+  [[nodiscard]] int state_size() const { return single_.state_size(); }
+  /// Largest remainder of a solution so far, as a part of its right-hand side [-].
+  [[nodiscard]] double defect() const { return std::max(single_.defect(), projection_.defect()); }
+
+  /// Takes tangents over a whole step. @param shifts  Of the parameters. @param direction  Of the
+  /// only tangent; null: one for each parameter.
+  /// @throws InputError where a velocity jumps, or a force is not symmetric in time.
+  Inputs push(std::size_t step, std::vector<ParameterShift>& shifts, const Vec* direction,
+              Mat& tangents);
+  /// Takes adjoints back over a whole step. @param by  To which the derivatives by parameters are
+  /// added.
+  void pull(std::size_t step, const Inputs& inputs, std::vector<Vec>& mu, std::vector<Vec>& by);
+
+ private:
+  Eigen::SparseMatrix<double> push_single(std::size_t step, std::size_t member, std::size_t k,
+                                          std::vector<ParameterShift>& shifts, const Vec* direction,
+                                          Mat& tangents);
+  void pull_single(std::size_t step, std::size_t member, std::size_t k,
+                   const Eigen::SparseMatrix<double>& inputs, std::vector<Vec>& mu,
+                   std::vector<Vec>& by);
+  [[nodiscard]] Trial trial(const State& from, const State& to, double length) const;
+  void combine(std::size_t step);
+  void check_single(double t) const;
+  void check_end(std::size_t step) const;
+
+  const System& system_;
+  const Model& model_;
+  const RunTape& tape_;
+  StepDerivative single_;
+  CombinationDerivative combination_;
+  ProjectionDerivative projection_;
+};
+
+}  // namespace polhode
