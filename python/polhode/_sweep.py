@@ -185,6 +185,11 @@ def _rows_of(path: str, identity: str, points: "list[dict[str, Any]]") -> "dict[
     return rows
 
 
+def _take_one_thread() -> None:
+    """Runs of this process have one thread each, as the processes share the processors."""
+    _native.set_threads(1)
+
+
 def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
     """Index and row of each task in the order of completion; runs of a killed process are repeated."""
     if processes == 1 or len(tasks) < 2:
@@ -197,7 +202,7 @@ def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
 
     left, deaths = dict(tasks), 0
     while left:
-        with ProcessPoolExecutor(processes or os.cpu_count(), get_context("spawn"), _native.set_threads, (1,)) as pool:
+        with ProcessPoolExecutor(processes or os.cpu_count(), get_context("spawn"), _take_one_thread) as pool:
             waiting = {pool.submit(_one, task): i for i, task in left.items()}
             try:
                 while waiting:
