@@ -9,7 +9,11 @@
 
 namespace polhode::io {
 
+namespace {
+
 using Element = XmlFile::Element;
+
+}  // namespace
 
 void MjcfTendons::read() {
   // Before springs of tendons change those of joints.
