@@ -27,21 +27,17 @@ constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_
 /// Those that are available where contacts are rows of the step.
 constexpr std::array kKeysOfRows{"static_friction", "friction_across", "direction"};
 
-/// Keys of laws by force; a model that has one of them, or names a law, gets the barrier or that
-/// law, others the one that is chosen for them.
-constexpr std::array kKeysOfForces{"law",
-                                   "gap_tolerance",
-                                   "stiffness",
-                                   "hertz_stiffness",
-                                   "reference_load",
-                                   "reference_pressure",
-                                   "rebound",
-                                   "friction_stiffness",
-                                   "friction_damping"};
+bool is_key_of_rows(std::string_view key) {
+  return std::find(kKeysOfRows.begin(), kKeysOfRows.end(), key) != kKeysOfRows.end();
+}
 
+/// Whether a law names itself or has a key of forces alone: a model with one gets that law or the
+/// barrier, others the law that is chosen for them.
 bool asks_for_forces(const SourceNode& law) {
-  return law.is_map() && std::any_of(kKeysOfForces.begin(), kKeysOfForces.end(),
-                                     [&](const char* key) { return law.find(key) != nullptr; });
+  return law.is_map() && (law.find("law") ||
+                          std::any_of(kForceKeys.begin(), kForceKeys.end(), [&](const char* key) {
+                            return !is_key_of_rows(key) && law.find(key);
+                          }));
 }
 
 /// Whether a law applies to all pairs, as it determines the integration.
@@ -57,9 +53,7 @@ void read_law(Section& section, ContactLawSpec& law) {
   if (is_of_all(law)) {
     const bool rigid = law.potential == "rigid";
     for (const char* key : kForceKeys) {
-      if (rigid && std::find(kKeysOfRows.begin(), kKeysOfRows.end(), std::string_view(key)) !=
-                       kKeysOfRows.end())
-        continue;
+      if (rigid && is_key_of_rows(key)) continue;
       by_hand.emplace_back(key);
       if (section.has(key))
         section.fault(key, format("cannot be combined with the law {}", law.potential),
