@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/gap.hpp>
 
 namespace polhode::contact {
@@ -31,6 +32,11 @@ struct BothPlaced {
 
 /// The gap with the normal closest to n, if they belong to one contact; null: there is none.
 [[nodiscard]] const Gap<double>* same_contact(const std::vector<Gap<double>>& gaps, const Vec3& n);
+
+/// Corrects the gap of two edges, or of an edge and a rim, so that it is negative behind each
+/// other.
+/// @returns whether they cross at all.
+bool correct_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g);
 
 /// Displacement of a relative to b over the step at a place in the middle of it.
 [[nodiscard]] inline Vec3 apart(const BodyStep& a, const BodyStep& b, const Vec3& place) {

@@ -41,27 +41,6 @@ bool correct_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<d
   return true;
 }
 
-/// Corrects the gap of two edges. Edges are in contact where they cross; their ends are corners,
-/// which are paired with the whole solid. Whether the cores have passed through each other follows
-/// from the outward sides of the edges.
-bool correct_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
-  if (d.pair.kind == GapKind::rim_edge) return correct_rim(d, a, b, g);
-  const geometry::Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
-  const auto inner = [](const geometry::Shape& s, const geometry::Shape::Edge& edge,
-                        const BodyStep& step, const Vec3& x) {
-    const Vec3 p = step.r_n + step.Lambda_n * s.corners[edge.i];
-    const Vec3 u = step.Lambda_n * (s.corners[edge.j] - s.corners[edge.i]);
-    const double t = (x - p).dot(u) / u.squaredNorm();
-    return t > 0.0 && t < 1.0;
-  };
-  const Vec3 n = value(g.normal), c = value(g.point);
-  if (!inner(*d.a, e, a, c) || !inner(*d.b, f, b, c)) return false;
-  if (n.dot(b.Lambda_n * f.out - a.Lambda_n * e.out) >= 0.0) return true;
-  g.distance = -g.distance - 2.0 * (d.a->rounding + d.b->rounding);
-  g.normal = -1.0 * g.normal;
-  return true;
-}
-
 /// Placement at the middle of a step. The mean of both orientations is not a rotation, but carries
 /// points by exactly u + θ × z̄ over the step. Half the rotation keeps the sizes of round parts, for
 /// their distances from edges.
@@ -131,6 +110,27 @@ Vec3 relative(const Vec3& v_a, const Vec3& w_a, const Vec3& arm_a, const Vec3& v
 }
 
 }  // namespace
+
+/// Edges are in contact where they cross; their ends are corners, which are paired with the whole
+/// solid. Whether the cores have passed through each other follows from the outward sides of the
+/// edges.
+bool correct_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
+  if (d.pair.kind == GapKind::rim_edge) return correct_rim(d, a, b, g);
+  const geometry::Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
+  const auto inner = [](const geometry::Shape& s, const geometry::Shape::Edge& edge,
+                        const BodyStep& step, const Vec3& x) {
+    const Vec3 p = step.r_n + step.Lambda_n * s.corners[edge.i];
+    const Vec3 u = step.Lambda_n * (s.corners[edge.j] - s.corners[edge.i]);
+    const double t = (x - p).dot(u) / u.squaredNorm();
+    return t > 0.0 && t < 1.0;
+  };
+  const Vec3 n = value(g.normal), c = value(g.point);
+  if (!inner(*d.a, e, a, c) || !inner(*d.b, f, b, c)) return false;
+  if (n.dot(b.Lambda_n * f.out - a.Lambda_n * e.out) >= 0.0) return true;
+  g.distance = -g.distance - 2.0 * (d.a->rounding + d.b->rounding);
+  g.normal = -1.0 * g.normal;
+  return true;
+}
 
 bool ContactSet::covers(std::span<const BodyStep> steps) const {
   for (int body = 0; body < static_cast<int>(references_.size()); ++body)

@@ -61,6 +61,10 @@ class Search {
       const double d = mobility(block);
       if (d > kHeld * most) d_.segment(block.first, block.size).setConstant(d);
     }
+    weight_ = d_;
+    if (problem.even)
+      for (double& w : weight_)
+        if (w > 0.0) w = most;
   }
 
   RowReport run(Vec& p, const Vec* guess) {
@@ -186,10 +190,10 @@ class Search {
   bool newton(const Vec& centre, double part, bool guessed = false) {
     Vec middle = centre, y, F;
     Rows D = A_, J;
-    D.diagonal() += part * d_;
+    D.diagonal() += part * weight_;
     const auto merit = [&](Rows* derivative) {
       y.noalias() = D * p_;
-      y += problem_.b - part * d_.cwiseProduct(middle);
+      y += problem_.b - part * weight_.cwiseProduct(middle);
       evaluate(y, D, F, derivative);
       const double error =
           F.cwiseProduct(d_).cwiseProduct(problem_.lengths).lpNorm<Eigen::Infinity>();
@@ -208,7 +212,7 @@ class Search {
         // A smaller part also multiplies rounding where rows share a load.
         if (least_ > kLessProximal * left) {
           if (part < kLeastProximal) return false;
-          D.diagonal() -= (1.0 - kLessProximal) * part * d_;
+          D.diagonal() -= (1.0 - kLessProximal) * part * weight_;
           part *= kLessProximal;
         }
         left = least_;
@@ -299,6 +303,7 @@ class Search {
   const Rows A_, sizes_;  ///< A of the problem, and its entries' magnitudes.
   Vec start_, best_, p_;
   double tolerance_, least_ = kEndless;
+  Vec weight_;   ///< Of the change of each impulse in proximal iterations, over ε.
   Vec d_;        ///< Mobility of each row, that of its block; 0: no impulse moves it.
   Vec pressed_;  ///< Normal impulses, projected.
   Vec y_exact_, F_exact_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -32,6 +33,9 @@ constexpr double kReachesLimit = 0.01;
 /// Distance of a load step, relative to the expected one, above which it may have left its branch,
 /// as after many iterations; and distance below which this is not checked [-].
 constexpr double kFar = 3.0, kNear = 0.02;
+/// Searches for the load at which a contact closes, and its accuracy.
+constexpr int kClosings = 60;
+constexpr double kClosed = 1e-9;
 /// Kind of interactions that are loads, whose potential is no strain energy.
 constexpr const char* kForceKind = "force";
 constexpr const char* kCableKind = "cable";
@@ -69,6 +73,9 @@ struct LoadStepper::Impl {
   }
 
   [[nodiscard]] bool follows() const { return options.history > 0.0; }
+  /// Whether there are unilateral rows: then an equilibrium has no branch to follow, as it leaves
+  /// one wherever a row closes or opens.
+  [[nodiscard]] bool unilateral() const { return newton.rows() != nullptr; }
   [[nodiscard]] double end() const { return follows() ? options.history : 1.0; }
   /// Largest increment, and the first one.
   [[nodiscard]] double longest() const {
@@ -187,7 +194,7 @@ struct LoadStepper::Impl {
 
   void accept(State old, double from, State& state, StaticStep& step, double expected) {
     bool known = equilibria > 0;
-    if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
+    if (!known && !unilateral() && (step.unstable > 0 || suspicious(old, state, step, expected))) {
       State unloaded = old;
       const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
       known = none.converged;
@@ -196,7 +203,7 @@ struct LoadStepper::Impl {
         old = unloaded;
       }
     }
-    if (known) look_between(old, from, state, step, expected);
+    if (known && !unilateral()) look_between(old, from, state, step, expected);
     report.slack = slack_cables(state);
     if (step.unstable >= 0) unstable = step.unstable;
     before = std::move(old);
@@ -213,7 +220,7 @@ struct LoadStepper::Impl {
   /// equilibrium whatever the load, or has no stiffness, as a toggle at its dead centre. There is
   /// no branch yet that would be left.
   bool goes_down(State& state, double factor) {
-    if (equilibria > 0 || relaxed) return false;
+    if (equilibria > 0 || relaxed || unilateral()) return false;
     const State old = state;
     StaticStep step = newton.relax(state, factor, false);
     take(step);
@@ -224,12 +231,56 @@ struct LoadStepper::Impl {
     return true;
   }
 
+  /// Ends a load step where the first contact with friction closes in it, as from there on its
+  /// friction holds. @eq{statics-closing}
+  void end_where_it_closes(const State& old, double from, State& state, StaticStep& step) {
+    double low = from, high = step.load_factor, gap_before = 0.0, low_before = from;
+    double gap = std::numeric_limits<double>::infinity();
+    bool known = false;  // two gaps before the contact
+    double last = high;
+    const auto solve = [&](State& trial, double at) {
+      last = at;
+      const StaticStep there = newton.solve(trial, at);
+      report.iterations += there.iterations;
+      return there;
+    };
+    for (int k = 0; k < kClosings && high - low > kClosed * size(from); ++k) {
+      double at = 0.5 * (low + high);
+      if (known && gap < gap_before)
+        at = std::clamp(low + (low - low_before) * gap / (gap_before - gap), low, at);
+      if (!(at > low)) at = std::min(high, low + kClosed * size(from));
+      State trial = old;
+      const StaticStep there = solve(trial, at);
+      if (!there.converged) break;
+      if (newton.closes()) {
+        high = at;
+        state = std::move(trial);
+        step = there;
+        continue;
+      }
+      const double now = newton.rows()->gap_of_closing();
+      known = std::isfinite(gap) && std::isfinite(now);
+      gap_before = gap;
+      low_before = low;
+      gap = now;
+      low = at;
+      if (gap > system->touching_gap()) continue;
+      state = std::move(trial);
+      step = there;
+      return;
+    }
+    if (last == step.load_factor) return;
+    state = old;  // reports are those of the last search
+    step = solve(state, step.load_factor);
+  }
+
   bool advance(State& state, double limit) {
     const double from = state.t, first = increment;
     for (;;) {
       const double factor = next_factor(from, limit);
       StaticStep step;
-      const bool predict = equilibria > 1 && from - factor_before > kSame * size(from);
+      const bool predict =
+          !unilateral() && equilibria > 1 && from - factor_before > kSame * size(from);
       State old = state;
       double expected = 0.0;
       if (predict) {
@@ -248,6 +299,7 @@ struct LoadStepper::Impl {
         }
         if (!step.increments.empty()) expected = std::max(expected, step.increments.front());
       }
+      if (step.converged && newton.closes()) end_where_it_closes(old, from, state, step);
       take(step);
       if (step.converged) {
         accept(std::move(old), from, state, step, expected);
