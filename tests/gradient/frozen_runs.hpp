@@ -77,27 +77,11 @@ inline double difference_from_frozen_runs(const FrozenCase& c, double part = 3e-
   EXPECT_LT(g.spot_check, check);
   const std::string& channel = request.outcomes.front().channel;
   std::vector<double> of_runs;
-  double largest = 0.0;
-  const auto size = [&](std::size_t j) {
-    const double value = request.parameters[j].value;
-    return value != 0.0 ? std::abs(value) : 1.0;
-  };
-  for (std::size_t j = 0; j < g.by.size(); ++j) {
-    const GradientParameter& p = request.parameters[j];
-    const double d = part * size(j);
-    const auto pair = [&](double k) {
-      return frozen_value(p.at(p.value + k * d), run.sequence, channel) -
-             frozen_value(p.at(p.value - k * d), run.sequence, channel);
-    };
-    of_runs.push_back((45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * d));
-    largest = std::max(largest, std::abs(of_runs[j]) * size(j));
-  }
-  double most = 0.0;
-  for (std::size_t j = 0; j < g.by.size(); ++j) {
-    const double scale = std::max(std::abs(of_runs[j]), 1e-3 * largest / size(j));
-    most = std::max(most, std::abs(g.by[j] - of_runs[j]) / scale);
-  }
-  return most;
+  for (const GradientParameter& p : request.parameters)
+    of_runs.push_back(sixth_order_difference(
+        [&](double x) { return frozen_value(p.at(x), run.sequence, channel); }, p.value,
+        part * size_of(p)));
+  return largest_difference(g, request.parameters, of_runs);
 }
 
 }  // namespace polhode::test

@@ -57,19 +57,41 @@ inline double value_at_end(const Model& model, const std::string& channel) {
   return OutcomeReader(model, map, channel).value(simulation.system(), simulation.state());
 }
 
-/// Central difference of order six between runs. @param part  Of the parameter's value.
-inline double difference_of_runs(const GradientParameter& parameter, const std::string& channel,
-                                 double part) {
-  const double d = part * (parameter.value != 0.0 ? std::abs(parameter.value) : 1.0);
-  const auto pair = [&](double k) {
-    return value_at_end(parameter.at(parameter.value + k * d), channel) -
-           value_at_end(parameter.at(parameter.value - k * d), channel);
-  };
+/// Central difference of order six of a function.
+template <class Function>
+double sixth_order_difference(const Function& f, double x, double d) {
+  const auto pair = [&](double k) { return f(x + k * d) - f(x - k * d); };
   return (45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * d);
 }
 
-/// Relative differences of a gradient from sixth-order differences of runs; parameters whose effect
+/// Magnitude of a parameter, 1 for one that is zero.
+inline double size_of(const GradientParameter& parameter) {
+  return parameter.value != 0.0 ? std::abs(parameter.value) : 1.0;
+}
+
+/// Central difference of order six between runs. @param part  Of the parameter's value.
+inline double difference_of_runs(const GradientParameter& parameter, const std::string& channel,
+                                 double part) {
+  return sixth_order_difference([&](double x) { return value_at_end(parameter.at(x), channel); },
+                                parameter.value, part * size_of(parameter));
+}
+
+/// Largest relative difference of a gradient from sixth-order differences; parameters whose effect
 /// is below a thousandth of the largest are compared with that.
+inline double largest_difference(const OutcomeGradient& g,
+                                 const std::vector<GradientParameter>& parameters,
+                                 const std::vector<double>& of_runs) {
+  double largest = 0.0, most = 0.0;
+  for (std::size_t j = 0; j < of_runs.size(); ++j)
+    largest = std::max(largest, std::abs(of_runs[j]) * size_of(parameters[j]));
+  for (std::size_t j = 0; j < of_runs.size(); ++j) {
+    const double scale = std::max(std::abs(of_runs[j]), 1e-3 * largest / size_of(parameters[j]));
+    most = std::max(most, std::abs(g.by[j] - of_runs[j]) / scale);
+  }
+  return most;
+}
+
+/// That of a gradient and of runs.
 /// @param check  Largest difference of tangent and adjoint that is allowed [-].
 inline double difference_from_runs(const GradientCase& c, double part = 3e-3,
                                    double check = 1e-11) {
@@ -77,19 +99,9 @@ inline double difference_from_runs(const GradientCase& c, double part = 3e-3,
   const OutcomeGradient g = differentiate(c.model(), request).outcomes.front();
   EXPECT_LT(g.spot_check, check);
   std::vector<double> of_runs;
-  double largest = 0.0;
-  const auto size = [&](std::size_t j) { return std::abs(request.parameters[j].value); };
-  for (std::size_t j = 0; j < g.by.size(); ++j) {
-    of_runs.push_back(
-        difference_of_runs(request.parameters[j], request.outcomes.front().channel, part));
-    largest = std::max(largest, std::abs(of_runs[j]) * size(j));
-  }
-  double most = 0.0;
-  for (std::size_t j = 0; j < g.by.size(); ++j) {
-    const double scale = std::max(std::abs(of_runs[j]), 1e-3 * largest / size(j));
-    most = std::max(most, std::abs(g.by[j] - of_runs[j]) / scale);
-  }
-  return most;
+  for (const GradientParameter& parameter : request.parameters)
+    of_runs.push_back(difference_of_runs(parameter, request.outcomes.front().channel, part));
+  return largest_difference(g, request.parameters, of_runs);
 }
 
 }  // namespace polhode::test

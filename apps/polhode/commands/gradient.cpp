@@ -75,7 +75,7 @@ struct StepRange {
   }
 };
 
-/// What is kept, in words.
+/// Description of the steps whose sequence a gradient keeps.
 std::string steps_text(const RunGradient& run) {
   const StepRange range(run);
   const auto whole = static_cast<std::int64_t>(run.sequence.size());

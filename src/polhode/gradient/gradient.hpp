@@ -66,8 +66,8 @@ struct RunGradient {
 /// that change more than numbers; SolveError for a run that does not end.
 [[nodiscard]] RunGradient differentiate(const Model& model, const GradientRequest& request);
 
-/// The same with half the steps, for error_bars(): of automatic ones each as two of half its
-/// length.
+/// Gradients of the run with steps of half the length, for error_bars(); each automatic step is
+/// taken as two of half its length.
 /// @param run  With the whole steps.
 [[nodiscard]] RunGradient differentiate_halves(const Model& model, const GradientRequest& request,
                                                const RunGradient& run);

@@ -32,7 +32,8 @@ constexpr LineSearchRule kHalveRows{0.0, 8, 0.5, 0.5, 0.5};
 constexpr std::size_t kLookBack = 5;
 /// Initial proximal parameters ε, parts of the diagonal of A: of the first search and of restarts.
 constexpr std::array kProximalParts{1e-3, 1e-1};
-/// Likewise of a search from a guess, whose rows act as those of the solution for the most part.
+/// Initial proximal parameter of a search from a guess, most of whose rows act as those of the
+/// solution.
 constexpr double kProximalOfGuess = 1e-6;
 /// Factor of that part after an iteration that leaves more than this of the error, and the part at
 /// which they end: below the rounding of velocities.

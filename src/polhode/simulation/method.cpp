@@ -45,7 +45,7 @@ constexpr int kIterationsContact = 40;
 constexpr int kManyBodies = 50;
 /// Default tolerance of automatic steps.
 constexpr double kDefaultError = 1e-6;
-/// Number of bodies and nodes from which on a run takes all processors.
+/// Number of bodies from which on a run takes all processors.
 constexpr int kBodiesForThreads = 40;
 /// Number of loops open at one body below which the tree elimination is always faster.
 constexpr int kFewOpenLoops = 6;

@@ -40,7 +40,7 @@ TEST_F(Mjcf, KeyframesAreTheStart) {
   EXPECT_THAT(notes("<worldbody>" + kTree + "</worldbody><keyframe><key act='1'/></keyframe>"),
               HasSubstr("'act' of <key> moves nothing"));
   EXPECT_THAT(notes("<worldbody>" + kTree + "</worldbody>" + kKeys),
-              testing::AllOf(HasSubstr("the model starts as the keyframe 'home' says"),
+              testing::AllOf(HasSubstr("the model starts at the keyframe 'home'"),
                              HasSubstr("a <key> other than that of the start is not read")));
 }
 
@@ -50,7 +50,7 @@ TEST_F(Mjcf, KeyframesAreChosenByNameOrNumber) {
   const Model reference = read(text, {"import.keyframe=none"});
   EXPECT_EQ(reference.bodies.at(1).position.x(), 1.1);
   EXPECT_EQ(reference.bodies.at(1).velocity, Vec3(0, 0, 0));
-  // Coordinates that are asked for replace those of the keyframe.
+  // Coordinates of import.start replace those of the keyframe.
   EXPECT_NEAR(Simulation(read(text, {"import.start.h=0.1"})).joint("h").coordinates[0], 0.1,
               kRounding);
   EXPECT_THAT(fault(text, {"import.keyframe=hone"}),

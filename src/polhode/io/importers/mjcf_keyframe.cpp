@@ -122,10 +122,10 @@ std::vector<double> read_keyframe(MjcfFile& file, const ImportOptions& options,
         file.ignored.add(*chosen, format("'{}' of <key>", attribute),
                          "moves nothing: mocap bodies are fixed, and there are no activations");
     controls = KeyframeReader(file, *chosen, robot).read(actuators);
-    file.notes.push_back(
-        {ImportNote::Kind::approximated, file.xml.place(*chosen),
-         format("the model starts as the keyframe {} says; MuJoCo does so when it is told to",
-                quote(names[k]))});
+    file.notes.push_back({ImportNote::Kind::approximated, file.xml.place(*chosen),
+                          format("the model starts at the keyframe {}; MuJoCo starts at its "
+                                 "reference configuration by default",
+                                 quote(names[k]))});
   }
   return controls;
 }
