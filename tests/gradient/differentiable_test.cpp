@@ -78,8 +78,8 @@ TEST(RequireDifferentiable, RefusesSettingsByName) {
 
 TEST(RequireDifferentiable, RefusesStopsFrictionAndSpringsOfJointsByName) {
   EXPECT_THAT(refusal_of({.of_joint = ", limits: {lower: -2, upper: 2}"}),
-              HasSubstr("joints.hinge: has stops: where an impact falls within a step depends on "
-                        "the parameters"));
+              HasSubstr("joints.hinge: has stops that act by forces: where an impact falls within "
+                        "a step depends on the parameters"));
   EXPECT_THAT(refusal_of({.of_joint = ", friction: {mu: 0.1, radius: 0.01}"}),
               HasSubstr("joints.hinge: has dry friction, whose memory has no derivative yet"));
   EXPECT_THAT(
@@ -92,8 +92,10 @@ TEST(RequireDifferentiable, RefusesStopsFrictionAndSpringsOfJointsByName) {
 
 TEST(RequireDifferentiable, RefusesContactsEventsAndControllersByName) {
   EXPECT_THAT(
-      refusal_of({.more = "contacts: {}\n", .shape = ", shape: {sphere: 0.1}"}),
-      HasSubstr("contacts: make the gradient of a run whose steps are kept a wrong number"));
+      refusal_of(
+          {.more = "contacts: {default: {law: barrier}}\n", .shape = ", shape: {sphere: 0.1}"}),
+      HasSubstr("contacts.default.law: is barrier, with which the gradient of a run whose steps "
+                "are kept is a wrong number"));
   EXPECT_THAT(
       refusal_of(
           {.more = "events:\n  low: {when: {body: rod, channel: z, below: -0.4}, stop: true}\n"}),
@@ -189,7 +191,7 @@ TEST(RequireDifferentiable, RefusesDrivesWhoseVelocityJumpsInAutomaticAndExtrapo
 TEST(RequireDifferentiable, RefusesEventsStopsAndContactsInAutomaticSteps) {
   const std::string automatic = "tolerance: 1e-6";
   EXPECT_THAT(refusal_of({.of_joint = ", limits: {lower: -2, upper: 2}", .analysis = automatic}),
-              HasSubstr("joints.hinge: has stops: where an impact falls within a step"));
+              HasSubstr("joints.hinge: has stops that act by forces: where an impact falls"));
   Entries event{.analysis = automatic};
   event.more = "events:\n  low: {when: {body: rod, channel: z, below: -0.4}, stop: true}\n";
   EXPECT_THAT(refusal_of(event),
@@ -198,7 +200,7 @@ TEST(RequireDifferentiable, RefusesEventsStopsAndContactsInAutomaticSteps) {
   contact.shape = ", shape: {sphere: 0.1}";
   EXPECT_THAT(
       refusal_of(contact),
-      HasSubstr("contacts: make the gradient of a run whose steps are kept a wrong number"));
+      HasSubstr("analysis.step: is missing: the impacts of contacts and stops are located"));
 }
 
 TEST(RequireDifferentiable, AcceptsAutomaticAndExtrapolatedSteps) {

@@ -80,6 +80,9 @@ std::string steps_text(const RunGradient& run) {
   const StepRange range(run);
   const auto whole = static_cast<std::int64_t>(run.sequence.size());
   const std::string single = run.steps > whole ? format(" ({} single ones)", run.steps) : "";
+  if (run.impacts > 0)
+    return format("{} steps of at most {}, {} of which end at an impact that was located", whole,
+                  seconds(run.step), run.impacts);
   if (run.step > 0.0)
     return format("{} steps of {}{}, kept as they are", whole, seconds(run.step), single);
   const std::string orders = range.highest_order > run.order
@@ -125,6 +128,7 @@ GradientJson gradient_json(const GradientRequest& request, const RunGradient& ru
           {"highest_order", range.highest_order},
           {"steps", run.steps},
           {"whole_steps", run.sequence.size()},
+          {"impacts", run.impacts},
           {"run_time_s", run.run_seconds},
           {"gradient_time_s", run.gradient_seconds},
           {"warnings", doubts},

@@ -6,6 +6,9 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/gradient/differentiable.hpp>
+#include <polhode/gradient/instant_rows.hpp>
+#include <polhode/simulation/order_choice.hpp>
+#include <polhode/system/time_breaks.hpp>
 
 namespace polhode {
 
@@ -57,13 +60,15 @@ void check_settings(const AnalysisSpec& a) {
         "Use at most 1e-5, or leave it out");
 }
 
-void check_joint(const JointSpec& joint) {
+/// @param by_rows  Whether stops and contacts are rows of the step, whose impacts are located.
+void check_joint(const JointSpec& joint, bool by_rows) {
   const std::string where = format("joints.{}", joint.name);
-  if (joint.limits || joint.angle_limits || joint.type == "slack_link")
+  const bool stops = joint.limits || joint.angle_limits || joint.type == "slack_link";
+  if (stops && !by_rows)
     refuse_gradient(where,
-                    "has stops: where an impact falls within a step depends on the parameters, and "
-                    "the gradient on the steps would be a wrong number",
-                    "Leave its limits out if they are not reached");
+                    "has stops that act by forces: where an impact falls within a step depends on "
+                    "the parameters, and the gradient on the steps would be a wrong number",
+                    "Use contacts: {default: {law: rigid}}, with which impacts are located");
   if (joint.friction)
     refuse_gradient(where, "has dry friction, whose memory has no derivative yet",
                     "Use a damper, or leave the friction out");
@@ -99,15 +104,46 @@ void check_load(const LoadSpec& load) {
                     "Give an expression or a table in the model");
 }
 
+/// Checks a model whose impacts are located.
+void check_located(const Model& model, const System& system) {
+  const AnalysisSpec& a = model.analysis;
+  if (!a.step)
+    refuse_gradient("analysis.step",
+                    "is missing: the impacts of contacts and stops are located within fixed steps",
+                    "Give a step instead of a tolerance");
+  if (const OrderChoice choice = choose_order(system, model); choice.order != 2)
+    refuse_gradient(
+        "analysis.order",
+        format("is {}: the impacts of stops are located in steps of order 2", choice.order),
+        "Use order: 2");
+  if (const TimeBreak at = TimeBreaks(system, a.duration).next(0.0);
+      at.exists() && at.t <= a.duration)
+    refuse_gradient("loads",
+                    format("have a function with a break at t = {:.6g} s, which together with "
+                           "contacts or stops has no derivative yet",
+                           at.t),
+                    "Use a smooth function");
+  for (const LoadSpec& load : model.loads)
+    if (load.drive == "speed")
+      refuse_gradient(format("loads.{}", load.name),
+                      "prescribes a speed, whose integral together with contacts or stops has no "
+                      "derivative yet",
+                      "Prescribe the angle or the displacement");
+}
+
 }  // namespace
 
 void require_differentiable(const Model& model, const System& system) {
   check_settings(model.analysis);
-  if (model.contacts.present || system.contacts())
-    refuse_gradient("contacts",
-                    "make the gradient of a run whose steps are kept a wrong number: where an "
-                    "impact falls within a step depends on the parameters",
-                    "Leave contacts out, or compare runs");
+  const bool by_rows = InstantRows::of(system);
+  if ((model.contacts.present || system.contacts()) && !model.contacts.rigid())
+    refuse_gradient(
+        "contacts.default.law",
+        format("is {}, with which the gradient of a run whose steps are kept is a wrong "
+               "number: where an impact falls within a step depends on the parameters",
+               model.contacts.standard.potential),
+        "Use law: rigid, with which impacts are located, or compare runs");
+  if (by_rows) check_located(model, system);
   if (!model.events.empty())
     refuse_gradient(format("events.{}", model.events.front().name),
                     "is within a step whose length depends on the parameters", "Leave events out");
@@ -126,12 +162,11 @@ void require_differentiable(const Model& model, const System& system) {
       refuse_gradient(format("beams.{}", beam.name),
                       "is viscous, and its memory has no derivative yet",
                       "Leave the relaxation time of its section out");
-  for (const JointSpec& joint : model.joints) check_joint(joint);
+  for (const JointSpec& joint : model.joints) check_joint(joint, by_rows);
   for (const LoadSpec& load : model.loads) check_load(load);
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
-    if (!traits.set_valued && !traits.has_barrier && !traits.compliant && traits.unilateral == 0)
-      continue;
+    if (!traits.set_valued && !traits.has_barrier && !traits.compliant) continue;
     refuse_gradient(format("{} '{}'", system.group(ref.group).kind(), system.name(ref)),
                     "has a law that jumps, at which there is no derivative",
                     "Use a law without jumps");

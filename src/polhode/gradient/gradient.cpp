@@ -12,6 +12,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/gradient/differentiable.hpp>
 #include <polhode/gradient/gradient.hpp>
+#include <polhode/gradient/located_run.hpp>
 #include <polhode/gradient/parameter_shift.hpp>
 #include <polhode/gradient/run_tape.hpp>
 #include <polhode/gradient/whole_step_derivative.hpp>
@@ -52,7 +53,7 @@ std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader
                            [](double time, const State& state) { return time < state.t; });
       const auto next = static_cast<std::size_t>(above - tape.ends.begin());
       for (const std::size_t k : {next, next - 1})
-        if (k <= last &&
+        if (k <= last && !tape.closing_at(k) &&
             std::abs(t(k) - outcome.time) <= kSameInstant * tape.sequence[k > 0 ? k - 1 : 0].length)
           return {{k, 1.0}};
       throw InputError(
@@ -130,8 +131,8 @@ class Differentiation {
     if (added_up) merge_weights();
     start_ = Mat::Zero(derivative_.state_size(), static_cast<Eigen::Index>(n));
     for (std::size_t j = 0; j < n; ++j) {
-      start_.col(static_cast<Eigen::Index>(j)) =
-          shifts_[j].start_derivative(system_, tape_.ends.front());
+      const Vec start = shifts_[j].start_derivative(system_, tape_.ends.front());
+      start_.col(static_cast<Eigen::Index>(j)).head(start.size()) = start;
       shifts_[j].begin(tape_.ends.front());
     }
     go_forward();
@@ -154,10 +155,12 @@ class Differentiation {
     g.unit = added_up ? "" : readers_[k].unit();
     g.by.resize(shifts_.size(), 0.0);
     if (factor == 0.0) return;
+    std::vector<double> values;
     for (const Place& place : places_[k]) {
       const State& state = tape_.ends[place.state];
       const double weight = factor * place.weight;
-      g.value += weight * readers_[k].value(system_, state);
+      values.push_back(readers_[k].value(system_, state));
+      g.value += weight * values.back();
       g.time = std::max(g.time, state.t);
       Vec by_state = Vec::Zero(derivative_.state_size());
       by_state.head(kStateNumbers * system_.body_count()) =
@@ -166,6 +169,17 @@ class Differentiation {
       for (std::size_t j = 0; j < shifts_.size(); ++j)
         g.by[j] += weight * shifts_[j].of_value(k, state);
     }
+    if (request_.outcomes[k].at == Outcome::At::mean && tape_.located())
+      add_weights_of_times(into, factor, values);
+  }
+
+  /// A mean depends on the times of impacts as well, by the intervals beside them.
+  void add_weights_of_times(std::size_t into, double factor, const std::vector<double>& values) {
+    std::vector<Weight>& list = weights_[into];
+    const double T = tape_.ends.back().t - tape_.ends.front().t;
+    for (std::size_t k = 1; k + 1 < values.size(); ++k)
+      list[list.size() - values.size() + k].by_state[derivative_.state_size() - 1] =
+          0.5 * factor / T * (values[k - 1] - values[k + 1]);
   }
 
   /// One weight for each state: the sum of those of all outcomes there.
@@ -337,6 +351,8 @@ RunGradient differentiate_run(const Model& model, const GradientRequest& request
     if (choice.extrapolated) result.order = std::min(result.order, 2 * step.members);
   result.steps = tape.single_steps();
   result.sequence = tape.sequence;
+  for (std::size_t k = 1; k < tape.ends.size(); ++k)
+    if (tape.closing_at(k)) ++result.impacts;
   result.outcomes = Differentiation(simulation, tape, map, request).compute();
   if (model.analysis.rho_inf < 1.0)
     result.redundant = rank_report(simulation.system(), tape.ends.front()).names;
@@ -349,7 +365,9 @@ RunGradient differentiate_run(const Model& model, const GradientRequest& request
 RunGradient differentiate(const Model& model, const GradientRequest& request) {
   check_request(request);
   return differentiate_run(model, request, [&](Simulation& simulation) {
-    return run_onto_tape(simulation, stops_of(model, request));
+    return InstantRows::of(simulation.system())
+               ? run_onto_located_tape(simulation)
+               : run_onto_tape(simulation, stops_of(model, request));
   });
 }
 

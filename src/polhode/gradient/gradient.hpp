@@ -50,10 +50,11 @@ struct OutcomeGradient {
 /// Gradients of the outcomes of a run, exact for its steps.
 struct RunGradient {
   std::vector<OutcomeGradient> outcomes;
-  std::int64_t steps = 0;  ///< Single ones: stages and members' steps, at orders above 2.
-  double step = 0.0;       ///< Fixed length [s]; 0: automatic.
-  int order = 2;           ///< The lowest one, if it varies.
-  StepSequence sequence;   ///< The whole steps, which are kept.
+  std::int64_t steps = 0;    ///< Single ones: stages and members' steps, at orders above 2.
+  double step = 0.0;         ///< Fixed length [s]; 0: automatic.
+  int order = 2;             ///< The lowest one, if it varies.
+  std::int64_t impacts = 0;  ///< Of contacts and stops, at each of which a step ends.
+  StepSequence sequence;     ///< The whole steps, which are kept.
   /// Joints with redundant rows, "joint 'elbow'", whose forces at ρ∞ < 1 cost digits.
   std::vector<std::string> redundant;
   double run_seconds = 0.0, gradient_seconds = 0.0;

@@ -52,12 +52,16 @@ class ParameterShift {
   /// Derivative of the inputs of a projection, see stage_inputs(), like add_residual().
   void add_projection(const std::vector<ProjectionStage>& stages, int column,
                       std::vector<Eigen::Triplet<double>>& entries);
+  /// Derivative of the gap of a row at a fixed state, the end of the step to which the memories
+  /// have been taken.
+  [[nodiscard]] double of_gap(const InstantRow& row, const State& state);
   /// Derivative of an outcome's value at a fixed state.
   [[nodiscard]] double of_value(std::size_t outcome, const State& state) const;
 
  private:
   struct Neighbour {
     std::unique_ptr<Simulation> simulation;
+    std::unique_ptr<InstantRows> rows;        ///< From the first impact on.
     std::unique_ptr<InteractionSweep> sweep;  ///< Of the interactions that may differ.
     std::vector<double> history, residual;
     std::vector<std::vector<double>> kept;  ///< Memories at the start and behind each member.
@@ -75,6 +79,8 @@ class ParameterShift {
   /// Whether interactions that count as equal are so, bit for bit.
   [[nodiscard]] bool others_are_equal(const Trial& step, std::span<const BodyStep> steps) const;
   void keep_memories();
+  /// The row of a neighbour.
+  [[nodiscard]] InstantRow row_of(Neighbour& n, const InstantRow& row, const State& state) const;
   void evaluate(Neighbour& n, const State& from, const Trial& step,
                 std::span<const BodyStep> steps) const;
 

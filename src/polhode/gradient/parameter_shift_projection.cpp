@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A parameter's neighbours in extrapolated steps: memories of members, and projections.
+// A parameter's neighbours in extrapolated steps and impacts: memories, projections and rows.
 #include <cmath>
 
 #include <polhode/gradient/parameter_shift.hpp>
@@ -36,6 +36,20 @@ void ParameterShift::remember_coordinates(const State& projected) {
   }
 }
 
+InstantRow ParameterShift::row_of(Neighbour& n, const InstantRow& row, const State& state) const {
+  const System& system = n.simulation->system();
+  if (!n.rows)
+    n.rows =
+        std::make_unique<InstantRows>(system, n.simulation->model().analysis.step.value_or(1.0));
+  return n.rows->same(state, instant_steps(system, state), n.history.data(), row);
+}
+
+double ParameterShift::of_gap(const InstantRow& row, const State& state) {
+  std::array<double, 4> gaps;
+  for (std::size_t k = 0; k < gaps.size(); ++k) gaps[k] = row_of(at_[k], row, state).gap;
+  return (2.0 / 3.0 * (gaps[0] - gaps[1]) - 1.0 / 12.0 * (gaps[2] - gaps[3])) / step_;
+}
+
 void ParameterShift::add_projection(const std::vector<ProjectionStage>& stages, int column,
                                     std::vector<Eigen::Triplet<double>>& entries) {
   const int count = stage_inputs(*system_);
@@ -47,6 +61,8 @@ void ParameterShift::add_projection(const std::vector<ProjectionStage>& stages, 
     for (Neighbour& n : at_) {
       const System& system = n.simulation->system();
       stage_terms(system, stage, n.history, bodies_, *n.sweep, unit_mass, n.terms);
+      if (stage.impact)
+        add_impact_terms(system, stage, row_of(n, stage.impact->row, stage.at), n.terms);
       if (stage.largest_row < 0) continue;
       Vec values;
       stage_terms(system, still, n.history, {}, *n.sweep, unit_mass, values);

@@ -139,6 +139,7 @@ int ProjectionDerivative::inputs() const {
 void ProjectionDerivative::linearize(const State& given) {
   stages_.clear();
   linear_.clear();
+  ties_.clear();
   projected_ = given;
   const PositionReport positions = projector_.assemble_positions(projected_);
   const VelocityReport velocities = projector_.project_velocities(projected_);
@@ -432,8 +433,10 @@ void ProjectionDerivative::push_velocities(std::size_t at, const Vec& inputs, Ve
   kkt_product(map_.topology, l.values, dv, false, product);
   rhs.tail(rows) -= product.tail(rows);
   size = std::max(size, product.tail(rows).lpNorm<Eigen::Infinity>());
-  const Vec dx = solve(stage, l, rhs, size, false);
+  const Vec dx = stage.impact ? push_impact(stage, l, dq, dv, inputs[first_row + rows], rhs, size)
+                              : solve(stage, l, rhs, size, false);
   for (int b = 0; b < n; ++b) {
+    if (!takes_part(b)) continue;
     const Vec3 dphi = dy.segment<3>(kStateNumbers * b + 3), jump = stage.x.segment<3>(6 * b + 3);
     dy.segment<3>(kStateNumbers * b + 6) += dx.segment<3>(6 * b);
     dy.segment<3>(kStateNumbers * b + 9) += system_->motion(stage.at, b).Lambda().transpose() *
@@ -447,16 +450,24 @@ void ProjectionDerivative::pull_velocities(std::size_t at, Vec& mu, Eigen::Ref<V
   const int n = system_->body_count(), first_row = 6 * n, rows = system_->rows();
   Vec weights = Vec::Zero(first_row + rows), of_q, of_v;
   for (int b = 0; b < n; ++b) {
+    if (!takes_part(b)) continue;
     weights.segment<3>(6 * b) = mu.segment<3>(kStateNumbers * b + 6);
     weights.segment<3>(6 * b + 3) =
         system_->motion(stage.at, b).Lambda() * mu.segment<3>(kStateNumbers * b + 9);
   }
-  const Vec x = solve(stage, l, weights, weights.lpNorm<Eigen::Infinity>(), true);
+  const double size = weights.lpNorm<Eigen::Infinity>();
+  double of_row = 0.0;
+  const Vec x = stage.impact ? solve_impact(stage, l, weights, 0.0, size, true, of_row)
+                             : solve(stage, l, weights, size, true);
   eta.head(first_row + rows) = -x;
   kkt_product(map_.topology, l.by_q, x, true, of_q);
   Vec only_rows = Vec::Zero(first_row + rows);
   only_rows.tail(rows) = x.tail(rows);
   kkt_product(map_.topology, l.values, only_rows, true, of_v);  // Gᵀ
+  if (stage.impact) {
+    eta[first_row + rows] = -of_row;
+    pull_impact(stage, l, x, of_row, of_q, of_v);
+  }
   for (int b = 0; b < n; ++b) {
     const BodyMotion m = system_->motion(stage.at, b);
     const Vec3 of_omega = of_v.segment<3>(6 * b + 3), jump = stage.x.segment<3>(6 * b + 3);

@@ -29,24 +29,6 @@ double bytes_of(const State& state) {
                    "Take longer steps, or a shorter run");
 }
 
-/// Memory of a tape so far.
-class TapeMemory {
- public:
-  explicit TapeMemory(const State& state) : bytes_(bytes_of(state)) {}
-  /// Number of states that a step of fixed length has.
-  void expect(double states) const {
-    if (bytes_ * states > kMostMemory) refuse_memory(bytes_ * states);
-  }
-  void add(const std::vector<TapeMember>& members) {
-    for (const TapeMember& m : members) states_ += static_cast<double>(m.states.size());
-    states_ += 1.0;
-    expect(states_);
-  }
-
- private:
-  double bytes_, states_ = 1.0;
-};
-
 /// Members of the step that ended at a state: the last single step is one of the member with the
 /// most.
 int members_of(const State& reached, double H) {
@@ -59,6 +41,18 @@ std::unique_ptr<NewtonEngine> engine_of(const Simulation& simulation) {
 
 }  // namespace
 
+TapeMemory::TapeMemory(const State& state) : bytes_(bytes_of(state)) {}
+
+void TapeMemory::expect(double states) const {
+  if (bytes_ * states > kMostMemory) refuse_memory(bytes_ * states);
+}
+
+void TapeMemory::add(const std::vector<TapeMember>& members) {
+  for (const TapeMember& m : members) states_ += static_cast<double>(m.states.size());
+  states_ += 1.0;
+  expect(states_);
+}
+
 std::int64_t RunTape::single_steps() const {
   std::size_t sum = 0;
   for (const std::vector<TapeMember>& step : members)
@@ -67,7 +61,8 @@ std::int64_t RunTape::single_steps() const {
 }
 
 TapeRecorder::TapeRecorder(const Simulation& simulation)
-    : single_(simulation.system(), engine_of(simulation),
+    : system_(&simulation.system()),
+      single_(simulation.system(), engine_of(simulation),
               GeneralizedAlpha::from_spectral_radius(simulation.model().analysis.rho_inf),
               lane_kernels(simulation.model().analysis.isa),
               simulation.model().analysis.conserving) {
@@ -122,7 +117,8 @@ void TapeRecorder::take(State& state, const TakenStep& step) {
     } else {
       const std::vector<double> one{1.0};
       for (const double part : table_ ? one : stages_) {
-        report = single_.take(state, part * step.length, control_.newton, {fresh ? -1 : 1});
+        report =
+            single_.take(state, part * step.length, control_.newton, {fresh ? -1 : 1, false, true});
         if (!report.converged) break;
       }
     }
@@ -131,6 +127,11 @@ void TapeRecorder::take(State& state, const TakenStep& step) {
   }
   if (!report.converged) throw SolveError(report.text(), "Take a shorter step");
   state.t = before.t + step.length;
+}
+
+bool TapeRecorder::touched() const {
+  const BodyContacts* contacts = system_->contacts().get();
+  return single_.jumped() || single_.stopped() || (contacts && contacts->touched());
 }
 
 RunTape run_onto_tape(Simulation& simulation, const std::vector<double>& stops) {

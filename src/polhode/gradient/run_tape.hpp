@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <polhode/dynamics/composition.hpp>
+#include <polhode/gradient/instant_rows.hpp>
 #include <polhode/gradient/step_sequence.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/simulation_details.hpp>
@@ -26,7 +28,16 @@ struct RunTape {
   std::vector<State> ends;                       ///< The start, and the ends of all whole steps.
   std::vector<std::vector<TapeMember>> members;  ///< By whole step: one, or those extrapolated.
   StepSequence sequence;
+  /// Row that closes at the end of each step, whose length is that until its gap is zero; empty
+  /// for models without unilateral rows.
+  std::vector<std::optional<InstantRow>> closings;
 
+  /// Whether impacts were located.
+  [[nodiscard]] bool located() const { return !closings.empty(); }
+  /// Row that closes at an end; null: none.
+  [[nodiscard]] const InstantRow* closing_at(std::size_t end) const {
+    return located() && end > 0 && closings[end - 1] ? &*closings[end - 1] : nullptr;
+  }
   /// State after a single step of a whole step.
   [[nodiscard]] const State& after(std::size_t step, std::size_t member, std::size_t k) const {
     const std::vector<State>& states = members[step][member].states;
@@ -49,16 +60,31 @@ class TapeRecorder {
   [[nodiscard]] std::vector<TapeMember> record(const State& from, const TakenStep& step);
   /// Takes a whole step. @throws SolveError if it is not accepted.
   void take(State& state, const TakenStep& step);
+  /// Whether a unilateral row touched in the last step, or a velocity jumped at its end.
+  [[nodiscard]] bool touched() const;
 
  private:
   [[nodiscard]] TapeMember chain(const State& from, const std::vector<double>& lengths,
                                  SingleStep::Predictor predictor, std::size_t kept);
 
+  const System* system_;
   GeneralizedAlpha ga_;
   StepControl control_;
   std::vector<double> stages_{1.0};
   SingleStep single_;
   std::unique_ptr<ExtrapolationTable> table_;
+};
+
+/// Memory of a tape so far, which is limited.
+class TapeMemory {
+ public:
+  explicit TapeMemory(const State& state);
+  /// Number of states that a step of fixed length has.
+  void expect(double states) const;
+  void add(const std::vector<TapeMember>& members);
+
+ private:
+  double bytes_, states_ = 1.0;
 };
 
 /// Runs a simulation from its start to its end.

@@ -228,31 +228,44 @@ void StepDerivative::add_coupled_masses() {
   }
 }
 
+/// Force and moment of a body of which parts count. Below 1e6 roundings of the inertia a force says
+/// nothing.
+std::pair<double, double> StepDerivative::force_scales(const Trial& step, int b) const {
+  const double rounding = 1e6 * kIncrementRounding * 4.0 / (dt_ * dt_);
+  const BodyData& body = system_->bodies()[static_cast<std::size_t>(b)];
+  const int slot = system_->slot(b), lane = slot % kLanes;
+  const TrialBlock& t = step.blocks[static_cast<std::size_t>(slot / kLanes)];
+  const double reach = Vec3(t.r[0][lane], t.r[1][lane], t.r[2][lane]).norm();
+  const Vec6& size = forward_.body_residual_scale(b);
+  const double force =
+      std::max(size.head<3>().maxCoeff(), rounding * body.mass * (reach + system_->length_scale()));
+  const double moment =
+      std::max(size.tail<3>().maxCoeff(), rounding * body.inertia.diagonal().maxCoeff());
+  return {force, std::max(moment, 1e-3 * force * system_->length_scale())};
+}
+
 void StepDerivative::measure_symmetry(const Trial& step) {
   asymmetric_ = -1;
   asymmetry_ = 0.0;
-  const double per_square = 4.0 / (dt_ * dt_);
   for (int b = 0; b < system_->body_count(); ++b) {
-    const BodyData& body = system_->bodies()[static_cast<std::size_t>(b)];
-    const int slot = system_->slot(b), lane = slot % kLanes;
-    const TrialBlock& t = step.blocks[static_cast<std::size_t>(slot / kLanes)];
-    const double reach = Vec3(t.r[0][lane], t.r[1][lane], t.r[2][lane]).norm();
+    const auto [force, moment] = force_scales(step, b);
     const Vec6 difference = backward_.body_residual(b) - forward_.body_residual(b);
-    const Vec6& size = forward_.body_residual_scale(b);
-    // Below 1e6 roundings of the inertia a force says nothing.
-    const double force =
-        std::max(size.head<3>().maxCoeff(), 1e6 * kIncrementRounding * per_square * body.mass *
-                                                (reach + system_->length_scale()));
-    const double moment =
-        std::max(size.tail<3>().maxCoeff(),
-                 1e6 * kIncrementRounding * per_square * body.inertia.diagonal().maxCoeff());
-    const double part = std::max(
-        difference.head<3>().norm() / force,
-        difference.tail<3>().norm() / std::max(moment, 1e-3 * force * system_->length_scale()));
+    const double part =
+        std::max(difference.head<3>().norm() / force, difference.tail<3>().norm() / moment);
     if (part <= asymmetry_) continue;
     asymmetry_ = part;
     asymmetric_ = b;
   }
+}
+
+double StepDerivative::unbalanced(const Trial& step) const {
+  double most = 0.0;
+  for (int b = 0; b < system_->body_count(); ++b) {
+    const auto [force, moment] = force_scales(step, b);
+    const Vec6& left = forward_.body_residual(b);
+    most = std::max({most, left.head<3>().norm() / force, left.tail<3>().norm() / moment});
+  }
+  return most;
 }
 
 Vec StepDerivative::solve(const Vec& rhs, bool transposed) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <polhode/equations/newton_system.hpp>
@@ -70,6 +71,9 @@ class StepDerivative {
   /// speed [-]: velocities have jumped there.
   [[nodiscard]] int jumped_body() const { return jumped_; }
   [[nodiscard]] double jump() const { return jump_; }
+  /// Largest force or moment that the step leaves open, as a part of the terms it consists of [-]:
+  /// of contacts and stops, which are not among its equations.
+  [[nodiscard]] double unbalanced(const Trial& step) const;
   /// Largest remainder of a solution so far, as a part of its right-hand side [-].
   [[nodiscard]] double defect() const { return defect_; }
 
@@ -116,6 +120,7 @@ class StepDerivative {
   void see_backwards(const Trial& step, const State& to);
   void differentiate_wrenches(const State& from, const Trial& step);
   void measure_symmetry(const Trial& step);
+  [[nodiscard]] std::pair<double, double> force_scales(const Trial& step, int body) const;
   [[nodiscard]] Vec solve(const Vec& rhs, bool transposed);
   /// K_y dy, or with `transposed` K_yᵀ η.
   [[nodiscard]] Vec by_state(const Vec& x, bool transposed) const;

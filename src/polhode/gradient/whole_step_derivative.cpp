@@ -3,6 +3,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/gradient/parameter_inputs.hpp>
 #include <polhode/gradient/whole_step_derivative.hpp>
 
 namespace polhode {
@@ -21,17 +22,6 @@ constexpr double kJumped = 1e-5;
                    "Use drives without kinks: a jump has no derivative yet");
 }
 
-Eigen::SparseMatrix<double> sparse(int rows, std::size_t columns,
-                                   const std::vector<Eigen::Triplet<double>>& entries) {
-  Eigen::SparseMatrix<double> matrix(rows, static_cast<Eigen::Index>(columns));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-Mat in_directions(const Eigen::SparseMatrix<double>& by, const Vec* direction) {
-  return direction ? Mat(by * *direction) : Mat(by);
-}
-
 }  // namespace
 
 WholeStepDerivative::WholeStepDerivative(const Simulation& simulation, const RunTape& tape)
@@ -40,7 +30,11 @@ WholeStepDerivative::WholeStepDerivative(const Simulation& simulation, const Run
       tape_(tape),
       single_(system_, model_.analysis.rho_inf),
       combination_(system_),
-      projection_(system_) {}
+      projection_(system_) {
+  if (!tape.located()) return;
+  sweep_.emplace(system_);
+  rows_.emplace(system_, *model_.analysis.step);
+}
 
 Trial WholeStepDerivative::trial(const State& from, const State& to, double length) const {
   Trial step = single_.trial(from, to, length);
@@ -73,13 +67,11 @@ void WholeStepDerivative::check_end(std::size_t step) const {
   }
 }
 
-Eigen::SparseMatrix<double> WholeStepDerivative::push_single(std::size_t at, std::size_t member,
-                                                             std::size_t k,
-                                                             std::vector<ParameterShift>& shifts,
-                                                             const Vec* direction, Mat& tangents) {
+Eigen::SparseMatrix<double> WholeStepDerivative::linearize_single(
+    std::size_t at, std::size_t member, std::size_t k, std::vector<ParameterShift>& shifts) {
   const double length = tape_.members[at][member].lengths[k];
   const State& from = single_.beginning(tape_.before(at, member, k), length);
-  const State& to = tape_.after(at, member, k);
+  const State& to = tape_.closing_at(at + 1) ? before_jump(at) : tape_.after(at, member, k);
   Trial step = trial(from, to, length);
   step.context.tangents = false;
   std::vector<BodyStep> steps;
@@ -90,10 +82,17 @@ Eigen::SparseMatrix<double> WholeStepDerivative::push_single(std::size_t at, std
     shifts[j].add_residual(from, step, steps, static_cast<int>(j), entries);
     shifts[j].commit(step, steps);
   }
-  Eigen::SparseMatrix<double> by = sparse(single_.inputs(), shifts.size(), entries);
   step.context.tangents = true;
   single_.linearize(from, to, step);
   check_single(from.t);
+  return sparse_inputs(single_.inputs(), shifts.size(), entries);
+}
+
+Eigen::SparseMatrix<double> WholeStepDerivative::push_single(std::size_t at, std::size_t member,
+                                                             std::size_t k,
+                                                             std::vector<ParameterShift>& shifts,
+                                                             const Vec* direction, Mat& tangents) {
+  Eigen::SparseMatrix<double> by = linearize_single(at, member, k, shifts);
   const Mat rhs = in_directions(by, direction);
   for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
     Vec dy = tangents.col(c);
@@ -114,6 +113,7 @@ void WholeStepDerivative::combine(std::size_t step) {
 WholeStepDerivative::Inputs WholeStepDerivative::push(std::size_t step,
                                                       std::vector<ParameterShift>& shifts,
                                                       const Vec* direction, Mat& tangents) {
+  if (tape_.located()) return push_located(step, shifts, direction, tangents);
   Inputs inputs;
   const std::vector<TapeMember>& members = tape_.members[step];
   if (members.size() == 1) {
@@ -138,7 +138,7 @@ WholeStepDerivative::Inputs WholeStepDerivative::push(std::size_t step,
       shifts[j].add_projection(projection_.stages(), static_cast<int>(j), entries);
     shifts[j].remember_coordinates(tape_.ends[step + 1]);
   }
-  inputs.push_back(sparse(projection_.inputs(), shifts.size(), entries));
+  inputs.push_back(sparse_inputs(projection_.inputs(), shifts.size(), entries));
   const Mat rhs = in_directions(inputs.back(), direction);
   for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
     std::vector<Vec> columns;
@@ -163,6 +163,7 @@ void WholeStepDerivative::pull_single(std::size_t at, std::size_t member, std::s
 
 void WholeStepDerivative::pull(std::size_t step, const Inputs& inputs, std::vector<Vec>& mu,
                                std::vector<Vec>& by) {
+  if (tape_.located()) return pull_located(step, inputs, mu, by);
   const std::vector<TapeMember>& members = tape_.members[step];
   std::size_t next = inputs.size();
   if (members.size() == 1) {

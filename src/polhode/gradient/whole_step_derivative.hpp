@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Sparse>
@@ -13,8 +14,9 @@
 
 namespace polhode {
 
-/// The derivative of the whole steps of a tape: of single steps, one after the other, and of
-/// extrapolated ones by their members, the combination of these and its projection.
+/// The derivative of the whole steps of a tape: of single steps, one after the other, of
+/// extrapolated ones by their members, the combination of these and its projection, and of those
+/// with located impacts by their lengths and jumps.
 class WholeStepDerivative {
  public:
   /// Derivatives of inputs by all parameters: of the single steps, member by member, and of the
@@ -23,7 +25,8 @@ class WholeStepDerivative {
 
   WholeStepDerivative(const Simulation& simulation, const RunTape& tape);
 
-  [[nodiscard]] int state_size() const { return single_.state_size(); }
+  /// With located impacts the last number is the derivative of the time of a state.
+  [[nodiscard]] int state_size() const { return single_.state_size() + (tape_.located() ? 1 : 0); }
   /// Largest remainder of a solution so far, as a part of its right-hand side [-].
   [[nodiscard]] double defect() const { return std::max(single_.defect(), projection_.defect()); }
 
@@ -43,6 +46,31 @@ class WholeStepDerivative {
   void pull_single(std::size_t step, std::size_t member, std::size_t k,
                    const Eigen::SparseMatrix<double>& inputs, std::vector<Vec>& mu,
                    std::vector<Vec>& by);
+  /// Derivatives of a step's inputs by its length and its time, and of the velocities at its end by
+  /// its length, at fixed places.
+  struct ByTime {
+    Vec length, time, velocities;
+  };
+  [[nodiscard]] Eigen::SparseMatrix<double> linearize_single(std::size_t at, std::size_t member,
+                                                             std::size_t k,
+                                                             std::vector<ParameterShift>& shifts);
+  Inputs push_located(std::size_t step, std::vector<ParameterShift>& shifts, const Vec* direction,
+                      Mat& tangents);
+  void pull_located(std::size_t step, const Inputs& inputs, std::vector<Vec>& mu,
+                    std::vector<Vec>& by);
+  [[nodiscard]] ByTime by_time(std::size_t step);
+  /// Derivative of the end of a step by its length.
+  [[nodiscard]] Vec by_length(const ByTime& times);
+  /// Derivative of the gap of a row by the state.
+  [[nodiscard]] Vec by_state(const InstantRow& row) const;
+  void linearize_impact(std::size_t step);
+  /// The end of a step with the velocities of its motion; valid until the next call.
+  [[nodiscard]] const State& before_jump(std::size_t step);
+  void check_impact(std::size_t step) const;
+  /// Whether the start of a step moves in time with the parameters.
+  [[nodiscard]] bool starts_late(std::size_t step) const {
+    return tape_.closing_at(step) != nullptr;
+  }
   [[nodiscard]] Trial trial(const State& from, const State& to, double length) const;
   void combine(std::size_t step);
   void check_single(double t) const;
@@ -54,6 +82,9 @@ class WholeStepDerivative {
   StepDerivative single_;
   CombinationDerivative combination_;
   ProjectionDerivative projection_;
+  std::optional<InteractionSweep> sweep_;  ///< With located impacts.
+  std::optional<InstantRows> rows_;        ///< Likewise.
+  State before_jump_;
 };
 
 }  // namespace polhode
