@@ -98,8 +98,8 @@ TEST(RequireDifferentiable, RefusesContactsEventsAndControllersByName) {
                 "are kept is a wrong number"));
   EXPECT_THAT(
       refusal_of(
-          {.more = "events:\n  low: {when: {body: rod, channel: z, below: -0.4}, stop: true}\n"}),
-      HasSubstr("events.low: is within a step whose length depends on the parameters"));
+          {.more = "events:\n  low: {when: {body: rod, channel: az, below: -0.4}, stop: true}\n"}),
+      HasSubstr("events.low.when: watches 'az', whose time has no derivative yet"));
   EXPECT_THAT(
       refusal_of(
           {.loads = "  drive: {type: rotary_motor, joint: hinge, moment: {controller: hold}}\n",
@@ -195,12 +195,11 @@ TEST(RequireDifferentiable, RefusesEventsStopsAndContactsInAutomaticSteps) {
   Entries event{.analysis = automatic};
   event.more = "events:\n  low: {when: {body: rod, channel: z, below: -0.4}, stop: true}\n";
   EXPECT_THAT(refusal_of(event),
-              HasSubstr("events.low: is within a step whose length depends on the parameters"));
+              HasSubstr("analysis.step: is missing: impacts and events are located within fixed"));
   Entries contact{.analysis = automatic, .more = "contacts: {}\n"};
   contact.shape = ", shape: {sphere: 0.1}";
-  EXPECT_THAT(
-      refusal_of(contact),
-      HasSubstr("analysis.step: is missing: the impacts of contacts and stops are located"));
+  EXPECT_THAT(refusal_of(contact),
+              HasSubstr("analysis.step: is missing: impacts and events are located within fixed"));
 }
 
 TEST(RequireDifferentiable, AcceptsAutomaticAndExtrapolatedSteps) {

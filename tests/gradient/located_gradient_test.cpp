@@ -269,8 +269,8 @@ TEST(LocatedGradient, RefusesByNameWhatHasNoDerivative) {
                       law(", restitution: 0.8"), "duration: 2, step: 10 ms"),
               HasSubstr("contacts: close more than 20 times within the step before t = "));
   EXPECT_THAT(refusal(ball, law(", restitution: 0.9"), "duration: 1, tolerance: 1e-6"),
-              HasSubstr("analysis.step: is missing: the impacts of contacts and stops are located "
-                        "within fixed steps"));
+              HasSubstr("analysis.step: is missing: impacts and events are located within fixed "
+                        "steps"));
   EXPECT_THAT(
       refusal("  ball: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 0.1]}", law("")),
       HasSubstr("the contact of body 'ball' and the ground: is closed at t = 0 s: one that lasts "
@@ -295,7 +295,7 @@ TEST(LocatedGradient, RefusesByNameWhatHasNoDerivative) {
   EXPECT_EQ(refusal(stop, law("")), "nothing");
   EXPECT_THAT(
       refusal(stop, "loads:\n  drive: {type: linear_motor, joint: slide, speed: 0.1}\n" + law("")),
-      HasSubstr("loads.drive: prescribes a speed, whose integral together with contacts"));
+      HasSubstr("loads.drive: prescribes a speed, whose integral together with impacts"));
   EXPECT_THAT(refusal(stop, ""), HasSubstr("joints.slide: has stops that act by forces"));
 }
 

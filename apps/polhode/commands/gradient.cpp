@@ -80,9 +80,10 @@ std::string steps_text(const RunGradient& run) {
   const StepRange range(run);
   const auto whole = static_cast<std::int64_t>(run.sequence.size());
   const std::string single = run.steps > whole ? format(" ({} single ones)", run.steps) : "";
-  if (run.impacts > 0)
-    return format("{} steps of at most {}, {} of which end at an impact that was located", whole,
-                  seconds(run.step), run.impacts);
+  if (run.impacts + run.events > 0)
+    return format("{} steps of at most {}, {} of which end at an {} that was located", whole,
+                  seconds(run.step), run.impacts + run.events,
+                  run.impacts > 0 ? "impact" : "event");
   if (run.step > 0.0)
     return format("{} steps of {}{}, kept as they are", whole, seconds(run.step), single);
   const std::string orders = range.highest_order > run.order
@@ -129,6 +130,7 @@ GradientJson gradient_json(const GradientRequest& request, const RunGradient& ru
           {"steps", run.steps},
           {"whole_steps", run.sequence.size()},
           {"impacts", run.impacts},
+          {"events", run.events},
           {"run_time_s", run.run_seconds},
           {"gradient_time_s", run.gradient_seconds},
           {"warnings", doubts},

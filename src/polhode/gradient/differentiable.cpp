@@ -104,29 +104,29 @@ void check_load(const LoadSpec& load) {
                     "Give an expression or a table in the model");
 }
 
-/// Checks a model whose impacts are located.
+/// Checks a model whose impacts or events are located.
 void check_located(const Model& model, const System& system) {
   const AnalysisSpec& a = model.analysis;
   if (!a.step)
     refuse_gradient("analysis.step",
-                    "is missing: the impacts of contacts and stops are located within fixed steps",
+                    "is missing: impacts and events are located within fixed steps",
                     "Give a step instead of a tolerance");
   if (const OrderChoice choice = choose_order(system, model); choice.order != 2)
     refuse_gradient(
         "analysis.order",
-        format("is {}: the impacts of stops are located in steps of order 2", choice.order),
+        format("is {}: impacts and events are located in steps of order 2", choice.order),
         "Use order: 2");
   if (const TimeBreak at = TimeBreaks(system, a.duration).next(0.0);
       at.exists() && at.t <= a.duration)
     refuse_gradient("loads",
                     format("have a function with a break at t = {:.6g} s, which together with "
-                           "contacts or stops has no derivative yet",
+                           "impacts or events has no derivative yet",
                            at.t),
                     "Use a smooth function");
   for (const LoadSpec& load : model.loads)
     if (load.drive == "speed")
       refuse_gradient(format("loads.{}", load.name),
-                      "prescribes a speed, whose integral together with contacts or stops has no "
+                      "prescribes a speed, whose integral together with impacts or events has no "
                       "derivative yet",
                       "Prescribe the angle or the displacement");
 }
@@ -144,9 +144,19 @@ void require_differentiable(const Model& model, const System& system) {
                model.contacts.standard.potential),
         "Use law: rigid, with which impacts are located, or compare runs");
   if (by_rows) check_located(model, system);
-  if (!model.events.empty())
-    refuse_gradient(format("events.{}", model.events.front().name),
-                    "is within a step whose length depends on the parameters", "Leave events out");
+  if (!model.events.empty()) {
+    if (by_rows)
+      refuse_gradient(format("events.{}", model.events.front().name),
+                      "has no derivative yet in a model with contacts or stops",
+                      "Leave one of both out");
+    check_located(model, system);
+    if (model.analysis.rho_inf < 1.0)
+      refuse_gradient("analysis.rho_inf",
+                      format("is {:g}: accelerations begin anew at events, which has no derivative "
+                             "yet",
+                             model.analysis.rho_inf),
+                      "Use rho_inf: 1, or leave events out");
+  }
   if (!model.controllers.empty())
     refuse_gradient(format("controllers.{}", model.controllers.front().name),
                     "has a memory without derivative",

@@ -53,7 +53,7 @@ std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader
                            [](double time, const State& state) { return time < state.t; });
       const auto next = static_cast<std::size_t>(above - tape.ends.begin());
       for (const std::size_t k : {next, next - 1})
-        if (k <= last && !tape.closing_at(k) &&
+        if (k <= last && !tape.moves(k) &&
             std::abs(t(k) - outcome.time) <= kSameInstant * tape.sequence[k > 0 ? k - 1 : 0].length)
           return {{k, 1.0}};
       throw InputError(
@@ -338,6 +338,7 @@ RunGradient differentiate_run(const Model& model, const GradientRequest& request
   SystemMap map;
   const System system = build_system(model, &map);
   require_differentiable(model, system);
+  require_differentiable_events(model, system, map);
   RunGradient result;
   result.step = model.analysis.step.value_or(0.0);
   double at = wall_clock();
@@ -351,8 +352,10 @@ RunGradient differentiate_run(const Model& model, const GradientRequest& request
     if (choice.extrapolated) result.order = std::min(result.order, 2 * step.members);
   result.steps = tape.single_steps();
   result.sequence = tape.sequence;
-  for (std::size_t k = 1; k < tape.ends.size(); ++k)
+  for (std::size_t k = 1; k < tape.ends.size(); ++k) {
     if (tape.closing_at(k)) ++result.impacts;
+    if (tape.event_at(k) >= 0) ++result.events;
+  }
   result.outcomes = Differentiation(simulation, tape, map, request).compute();
   if (model.analysis.rho_inf < 1.0)
     result.redundant = rank_report(simulation.system(), tape.ends.front()).names;
@@ -365,9 +368,13 @@ RunGradient differentiate_run(const Model& model, const GradientRequest& request
 RunGradient differentiate(const Model& model, const GradientRequest& request) {
   check_request(request);
   return differentiate_run(model, request, [&](Simulation& simulation) {
-    return InstantRows::of(simulation.system())
-               ? run_onto_located_tape(simulation)
-               : run_onto_tape(simulation, stops_of(model, request));
+    if (InstantRows::of(simulation.system())) return run_onto_located_tape(simulation);
+    if (!model.events.empty()) {
+      SystemMap map;
+      const System system = build_system(model, &map);
+      return run_onto_event_tape(simulation, map);
+    }
+    return run_onto_tape(simulation, stops_of(model, request));
   });
 }
 

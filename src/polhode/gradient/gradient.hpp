@@ -54,6 +54,7 @@ struct RunGradient {
   double step = 0.0;         ///< Fixed length [s]; 0: automatic.
   int order = 2;             ///< The lowest one, if it varies.
   std::int64_t impacts = 0;  ///< Of contacts and stops, at each of which a step ends.
+  std::int64_t events = 0;   ///< Of those with a condition, likewise.
   StepSequence sequence;     ///< The whole steps, which are kept.
   /// Joints with redundant rows, "joint 'elbow'", whose forces at ρ∞ < 1 cost digits.
   std::vector<std::string> redundant;

@@ -258,7 +258,59 @@ RunTape run_onto_located_tape(Simulation& simulation) {
     tape.members.push_back(locator.recorder().record(tape.ends.back(), {length, 1}));
     tape.sequence.push_back({length, 1});
     tape.closings.push_back(closing);
+    tape.events.push_back(-1);
     tape.ends.push_back(state);
+    memory.add(tape.members.back());
+  }
+  return tape;
+}
+
+/// @eq{located-step}
+RunTape run_onto_event_tape(Simulation& simulation, const SystemMap& map) {
+  const Model& model = simulation.model();
+  require_end(model.analysis);
+  const System& system = simulation.system();
+  const double end = model.analysis.duration;
+  RunTape tape;
+  tape.margins = event_margins(model, map);
+  TapeRecorder recorder(simulation);
+  TapeMemory memory(simulation.state());
+  memory.expect(end / *model.analysis.step);
+  tape.ends.push_back(simulation.state());
+  while (simulation.time() < end * (1.0 - kSameEnd) && !simulation.stopped()) {
+    const std::vector<double> before = event_counts(system, tape.ends.back(), model.events.size());
+    const StepReport report = simulation.step(end);
+    if (!report.accepted)
+      throw SolveError(report.message, "The run must end before it has a gradient");
+    const State& reached = simulation.state();
+    const std::vector<double> after = event_counts(system, reached, model.events.size());
+    int event = -1, count = 0;
+    for (std::size_t e = 0; e < after.size(); ++e) {
+      if (after[e] == before[e]) continue;
+      ++count;
+      if (model.events[e].when) event = static_cast<int>(e);
+    }
+    if (event >= 0 && (count > 1 || report.dt == 0.0))
+      throw InputError(
+          format("events.{}", model.events[static_cast<std::size_t>(event)].name),
+          format("occurs at t = {:.6g} s {}, where the derivative is one-sided", reached.t,
+                 count > 1 ? "together with another one" : "at the start of a step"),
+          "Take another step, or move one of them");
+    if (report.dt == 0.0) {
+      tape.ends.back() = reached;
+      continue;
+    }
+    // The multipliers of joints that are switched off now are those of the step before that.
+    tape.members.push_back(recorder.record(tape.ends.back(), {report.dt, 1}));
+    if (count > 0) {
+      State own = tape.ends.back();
+      recorder.take(own, {report.dt, 1});
+      tape.members.back().front().states.push_back(std::move(own));
+    }
+    tape.sequence.push_back({report.dt, 1});
+    tape.closings.emplace_back();
+    tape.events.push_back(event);
+    tape.ends.push_back(reached);
     memory.add(tape.members.back());
   }
   return tape;

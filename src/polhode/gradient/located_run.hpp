@@ -12,4 +12,8 @@ namespace polhode {
 /// same instant, grazing, friction; SolveError if a step is not accepted.
 [[nodiscard]] RunTape run_onto_located_tape(Simulation& simulation);
 
+/// Runs a model with events, whose conditions the run locates itself, with fixed steps.
+/// @throws InputError for events at the same instant or at the start of a step; SolveError.
+[[nodiscard]] RunTape run_onto_event_tape(Simulation& simulation, const SystemMap& map);
+
 }  // namespace polhode

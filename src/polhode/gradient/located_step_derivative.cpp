@@ -16,6 +16,9 @@ namespace {
 constexpr double kLengthStep = 1e-3, kTimeStep = 1e-2;
 /// Part of the forces of a step that contacts and stops have in a step without them: round-off.
 constexpr double kBalanced = 1e-6;
+/// Rate of the margin of an event at it, as a part of the mean one in the step before, below which
+/// it only reaches its level.
+constexpr double kSlow = 1e-3;
 /// Difference of the velocities behind an impact from those of its own law, as a part of them.
 constexpr double kSameImpact = 1e-7;
 
@@ -25,7 +28,7 @@ constexpr double kSameImpact = 1e-7;
 /// square of the length, in closed form, all else by differences.
 WholeStepDerivative::ByTime WholeStepDerivative::by_time(std::size_t step) {
   const double h = tape_.sequence[step].length;
-  const State &from = tape_.ends[step], &to = tape_.ends[step + 1];
+  const State &from = tape_.ends[step], &to = tape_.after(step, 0, 0);
   const int bodies = system_.body_count();
   const auto steps_of = [&](const Trial& x) {
     std::vector<BodyStep> steps;
@@ -74,11 +77,22 @@ Vec WholeStepDerivative::by_length(const ByTime& times) {
   return along + times.velocities;
 }
 
-Vec WholeStepDerivative::by_state(const InstantRow& row) const {
+Vec WholeStepDerivative::by_state(std::size_t step) const {
+  if (const int event = tape_.event_at(step + 1); event >= 0)
+    return tape_.margins[static_cast<std::size_t>(event)]->by_state(system_,
+                                                                    tape_.after(step, 0, 0));
+  const InstantRow& row = *tape_.closing_at(step + 1);
   Vec by = Vec::Zero(single_.state_size());
   if (row.a != kGround) by.segment<6>(kStateNumbers * row.a) = row.by_a;
   if (row.b != kGround) by.segment<6>(kStateNumbers * row.b) += row.by_b;
   return by;
+}
+
+/// Derivative of the same by a parameter, at a fixed state.
+double WholeStepDerivative::of_end(ParameterShift& shift, std::size_t step) const {
+  if (const int event = tape_.event_at(step + 1); event >= 0)
+    return shift.of_margin(static_cast<std::size_t>(event), tape_.after(step, 0, 0));
+  return shift.of_gap(*tape_.closing_at(step + 1), tape_.ends[step + 1]);
 }
 
 const State& WholeStepDerivative::before_jump(std::size_t step) {
@@ -93,6 +107,23 @@ const State& WholeStepDerivative::before_jump(std::size_t step) {
     before_jump_.set_motion(system_.slot(b), m);
   }
   return before_jump_;
+}
+
+/// Refuses events whose margin hardly changes: kSlow of what it could with the speeds there.
+void WholeStepDerivative::check_rate(std::size_t step, double rate) const {
+  const int event = tape_.event_at(step + 1);
+  if (event < 0) return;
+  const auto& spec = model_.events[static_cast<std::size_t>(event)];
+  const EventMargin& margin = *tape_.margins[static_cast<std::size_t>(event)];
+  const double before = margin.value(system_, tape_.ends[step]),
+               size = std::abs(before) / tape_.sequence[step].length;
+  if (rate > kSlow * size) return;
+  throw InputError(
+      format("events.{}", spec.name),
+      format("occurs at t = {:.6g} s where its channel hardly changes: its time has no "
+             "derivative",
+             tape_.ends[step + 1].t),
+      "Choose another level");
 }
 
 void WholeStepDerivative::linearize_impact(std::size_t step) {
@@ -125,55 +156,58 @@ WholeStepDerivative::Inputs WholeStepDerivative::push_located(std::size_t step,
                                                               std::vector<ParameterShift>& shifts,
                                                               const Vec* direction, Mat& tangents) {
   Inputs inputs = {linearize_single(step, 0, 0, shifts)};
-  const State& reached = tape_.ends[step + 1];
+  const State& reached = tape_.after(step, 0, 0);
   if (single_.unbalanced(trial(tape_.ends[step], reached, tape_.sequence[step].length)) > kBalanced)
     throw InputError("contacts",
                      format("act in the step from t = {:.6g} s without an impact at its end, which "
                             "has no derivative yet",
                             tape_.ends[step].t),
                      "Take a shorter step, or compare runs");
-  const InstantRow* const closing = tape_.closing_at(step + 1);
+  const bool moves = tape_.moves(step + 1);
   const Eigen::Index time = single_.state_size();
   ByTime times;
-  Vec along;
-  if (closing || starts_late(step)) times = by_time(step);
+  if (moves || starts_late(step)) times = by_time(step);
   Mat rhs = in_directions(inputs[0], direction);
   for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
     Vec dy = tangents.col(c).head(time), in = rhs.col(c);
     const double late = tangents(time, c);
     if (starts_late(step)) in += late * times.time;
-    if (!closing && starts_late(step)) in -= late * times.length;
+    if (!moves && starts_late(step)) in -= late * times.length;
     single_.push(in, dy);
-    if (!closing) {
+    if (!moves) {
       if (starts_late(step)) dy -= late * times.velocities;
       tangents(time, c) = 0.0;
     }
     tangents.col(c).head(time) = dy;
   }
-  if (!closing) return inputs;
+  for (ParameterShift& shift : shifts) shift.follow_switches(tape_.ends[step + 1]);
+  if (!moves) return inputs;
 
-  const State& end = tape_.ends[step + 1];
-  along = by_length(times);
-  const Vec gap = by_state(*closing);
+  const Vec along = by_length(times), gap = by_state(step);
   const double rate = gap.dot(along);
+  check_rate(step, rate);
   std::vector<Eigen::Triplet<double>> of_gap, of_impact;
   for (std::size_t j = 0; j < shifts.size(); ++j)
-    of_gap.emplace_back(0, static_cast<int>(j), shifts[j].of_gap(*closing, end));
+    of_gap.emplace_back(0, static_cast<int>(j), of_end(shifts[j], step));
   inputs.push_back(sparse_inputs(1, shifts.size(), of_gap));
+  rhs = in_directions(inputs[1], direction);
+  for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
+    const double longer = -(gap.dot(tangents.col(c).head(time)) + rhs(0, c)) / rate;
+    tangents.col(c).head(time) += longer * along;
+    tangents(time, c) += longer;
+  }
+  if (!tape_.closing_at(step + 1)) return inputs;
+
   linearize_impact(step);
   check_impact(step);
   for (std::size_t j = 0; j < shifts.size(); ++j)
     shifts[j].add_projection(projection_.stages(), static_cast<int>(j), of_impact);
   inputs.push_back(sparse_inputs(projection_.inputs(), shifts.size(), of_impact));
-  rhs = in_directions(inputs[1], direction);
   const Mat jumps = in_directions(inputs[2], direction);
   for (Eigen::Index c = 0; c < tangents.cols(); ++c) {
     Vec dy = tangents.col(c).head(time);
-    const double longer = -(gap.dot(dy) + rhs(0, c)) / rate;
-    dy += longer * along;
     projection_.push(jumps.col(c), dy);
     tangents.col(c).head(time) = dy;
-    tangents(time, c) += longer;
   }
   return inputs;
 }
@@ -182,24 +216,25 @@ WholeStepDerivative::Inputs WholeStepDerivative::push_located(std::size_t step,
 void WholeStepDerivative::pull_located(std::size_t step, const Inputs& inputs, std::vector<Vec>& mu,
                                        std::vector<Vec>& by) {
   const InstantRow* const closing = tape_.closing_at(step + 1);
+  const bool moves = tape_.moves(step + 1);
   const State& from = tape_.ends[step];
-  const State& to = closing ? before_jump(step) : tape_.ends[step + 1];
+  const State& to = closing ? before_jump(step) : tape_.after(step, 0, 0);
   single_.linearize(from, to, trial(from, to, tape_.sequence[step].length));
   const Eigen::Index time = single_.state_size();
   ByTime times;
   Vec along, gap;
-  if (closing || starts_late(step)) times = by_time(step);
-  if (closing) {
+  if (moves || starts_late(step)) times = by_time(step);
+  if (moves) {
     along = by_length(times);
-    gap = by_state(*closing);
-    linearize_impact(step);
+    gap = by_state(step);
   }
+  if (closing) linearize_impact(step);
   for (std::size_t o = 0; o < mu.size(); ++o) {
     if (mu[o].isZero(0.0)) continue;
     Vec m = mu[o].head(time);
-    double late = closing ? mu[o][time] : 0.0;
-    if (closing) {
-      by[o] += inputs[2].transpose() * projection_.pull(m);
+    double late = moves ? mu[o][time] : 0.0;
+    if (closing) by[o] += inputs[2].transpose() * projection_.pull(m);
+    if (moves) {
       const double longer = (m.dot(along) + late) / gap.dot(along);
       by[o] += inputs[1].transpose() * Vec::Constant(1, -longer);
       m -= longer * gap;
@@ -209,7 +244,7 @@ void WholeStepDerivative::pull_located(std::size_t step, const Inputs& inputs, s
     const Vec eta = single_.pull(m);
     by[o] += inputs[0].transpose() * eta;
     if (starts_late(step)) late += eta.dot(times.time);
-    if (starts_late(step) && !closing) late -= eta.dot(times.length);
+    if (starts_late(step) && !moves) late -= eta.dot(times.length);
     mu[o].head(time) = m;
     mu[o][time] = late;
   }

@@ -110,6 +110,11 @@ ParameterShift::ParameterShift(const GradientParameter& parameter, const Simulat
     join(changed.bodies, items.bodies);
     join(changed.interactions, items.interactions);
     n.readers = readers_of(n.simulation->model(), map, outcomes);
+    n.margins = event_margins(n.simulation->model(), map);
+    for (std::size_t e = 0; e < n.margins.size(); ++e)
+      if (n.simulation->model().events[e].at != base.model().events[e].at)
+        throw InputError(path_, "moves the time of an event, which has no derivative yet",
+                         "Let the event occur by a condition");
   }
   set_items(base.system(), changed);
 }

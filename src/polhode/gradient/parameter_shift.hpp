@@ -12,6 +12,7 @@
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/gradient/changed_items.hpp>
 #include <polhode/gradient/combination_derivative.hpp>
+#include <polhode/gradient/event_margin.hpp>
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/gradient/outcome.hpp>
 #include <polhode/gradient/projection_derivative.hpp>
@@ -55,6 +56,10 @@ class ParameterShift {
   /// Derivative of the gap of a row at a fixed state, the end of the step to which the memories
   /// have been taken.
   [[nodiscard]] double of_gap(const InstantRow& row, const State& state);
+  /// Derivative of the margin of an event at a fixed state.
+  [[nodiscard]] double of_margin(std::size_t event, const State& state) const;
+  /// Switches off in the memories what is off in a state of the run.
+  void follow_switches(const State& state);
   /// Derivative of an outcome's value at a fixed state.
   [[nodiscard]] double of_value(std::size_t outcome, const State& state) const;
 
@@ -67,6 +72,7 @@ class ParameterShift {
     std::vector<std::vector<double>> kept;  ///< Memories at the start and behind each member.
     Vec terms;                              ///< Of a projection.
     std::vector<OutcomeReader> readers;
+    std::vector<std::optional<EventMargin>> margins;  ///< By event.
   };
   template <class Value>
   [[nodiscard]] auto difference(const Value& of) const {

@@ -50,6 +50,21 @@ double ParameterShift::of_gap(const InstantRow& row, const State& state) {
   return (2.0 / 3.0 * (gaps[0] - gaps[1]) - 1.0 / 12.0 * (gaps[2] - gaps[3])) / step_;
 }
 
+double ParameterShift::of_margin(std::size_t event, const State& state) const {
+  return difference(
+      [&](const Neighbour& n) { return n.margins[event]->value(n.simulation->system(), state); });
+}
+
+void ParameterShift::follow_switches(const State& state) {
+  for (std::size_t i = 0; i < system_->interactions().size(); ++i) {
+    const InteractionRef& ref = system_->interactions()[i];
+    if (system_->traits(ref).off < 0 || !system_->is_off(state, static_cast<int>(i))) continue;
+    for (Neighbour& n : at_)
+      n.simulation->system().group(ref.group).switch_off(ref.item,
+                                                         n.history.data() + ref.first_history);
+  }
+}
+
 void ParameterShift::add_projection(const std::vector<ProjectionStage>& stages, int column,
                                     std::vector<Eigen::Triplet<double>>& entries) {
   const int count = stage_inputs(*system_);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polhode/dynamics/composition.hpp>
+#include <polhode/gradient/event_margin.hpp>
 #include <polhode/gradient/instant_rows.hpp>
 #include <polhode/gradient/step_sequence.hpp>
 #include <polhode/simulation/method.hpp>
@@ -28,12 +29,22 @@ struct RunTape {
   std::vector<State> ends;                       ///< The start, and the ends of all whole steps.
   std::vector<std::vector<TapeMember>> members;  ///< By whole step: one, or those extrapolated.
   StepSequence sequence;
-  /// Row that closes at the end of each step, whose length is that until its gap is zero; empty
-  /// for models without unilateral rows.
+  /// Row that closes at the end of each step, whose length is that until its gap is zero, and event
+  /// that occurs there, −1 for none; empty for models without unilateral rows and events.
   std::vector<std::optional<InstantRow>> closings;
+  std::vector<int> events;
+  std::vector<std::optional<EventMargin>> margins;  ///< By event.
 
-  /// Whether impacts were located.
+  /// Whether ends of steps were located.
   [[nodiscard]] bool located() const { return !closings.empty(); }
+  /// Event with a condition at an end, −1: none.
+  [[nodiscard]] int event_at(std::size_t end) const {
+    return located() && end > 0 ? events[end - 1] : -1;
+  }
+  /// Whether the time of an end depends on the motion.
+  [[nodiscard]] bool moves(std::size_t end) const {
+    return closing_at(end) != nullptr || event_at(end) >= 0;
+  }
   /// Row that closes at an end; null: none.
   [[nodiscard]] const InstantRow* closing_at(std::size_t end) const {
     return located() && end > 0 && closings[end - 1] ? &*closings[end - 1] : nullptr;

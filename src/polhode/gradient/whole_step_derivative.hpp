@@ -59,18 +59,19 @@ class WholeStepDerivative {
   void pull_located(std::size_t step, const Inputs& inputs, std::vector<Vec>& mu,
                     std::vector<Vec>& by);
   [[nodiscard]] ByTime by_time(std::size_t step);
+  [[nodiscard]] double of_end(ParameterShift& shift, std::size_t step) const;
   /// Derivative of the end of a step by its length.
   [[nodiscard]] Vec by_length(const ByTime& times);
-  /// Derivative of the gap of a row by the state.
-  [[nodiscard]] Vec by_state(const InstantRow& row) const;
+  /// Derivative by the state of what is zero at the end of a step: the gap of a row, or the margin
+  /// of an event.
+  [[nodiscard]] Vec by_state(std::size_t step) const;
   void linearize_impact(std::size_t step);
+  void check_rate(std::size_t step, double rate) const;
   /// The end of a step with the velocities of its motion; valid until the next call.
   [[nodiscard]] const State& before_jump(std::size_t step);
   void check_impact(std::size_t step) const;
   /// Whether the start of a step moves in time with the parameters.
-  [[nodiscard]] bool starts_late(std::size_t step) const {
-    return tape_.closing_at(step) != nullptr;
-  }
+  [[nodiscard]] bool starts_late(std::size_t step) const { return tape_.moves(step); }
   [[nodiscard]] Trial trial(const State& from, const State& to, double length) const;
   void combine(std::size_t step);
   void check_single(double t) const;
