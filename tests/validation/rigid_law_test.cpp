@@ -163,6 +163,41 @@ TEST(RigidLaw, ARestartContinuesWithTheSameBits) {
   EXPECT_EQ(second.state_hash(), whole.state_hash());
 }
 
+// A square bar on edge falls across the edge of another: one row, e of its speed at every step.
+TEST(RigidLaw, ABarReboundsFromAnEdgeAcrossIt) {
+  const double g = 9.81, drop = 0.05, e = 0.5, top = 0.1 * std::sqrt(2.0);
+  // Edges are rounded off by 1e-3 of half the thickness.
+  const double rounded = top - 4.0 * 0.05e-3 * (std::sqrt(2.0) - 1.0);
+  for (const double h : {1e-2, 1e-3, 1e-4}) {
+    const double T = std::sqrt(2.0 * drop / g) * (1.0 + e);  // at its highest again
+    Simulation s = made(model(
+        format("  anvil: {{fixed: true, shape: {{box: [1, 0.1, 0.1]}}, orientation: {{axis: "
+               "x, angle: 45 deg}}, position: [0, 0, 1]}}\n"
+               "  bar: {{shape: {{box: [0.1, 1, 0.1]}}, mass: 2, orientation: {{axis: y, angle: "
+               "45 deg}}, position: [0, 0, {}]}}",
+               1.0 + rounded + drop),
+        format(", friction: 0.3, restitution: {}", e), std::round(T / h) * h, h));
+    const RunSummary r = closed(s);
+    EXPECT_NEAR(r.contact.least_gap, 0.0, 1e-10);
+    const double height = s.body(2).r[2] - 1.0 - rounded, v = s.body(2).v[2];
+    EXPECT_NEAR(height + 0.5 * v * v / g, e * e * drop, 0.3 * h * drop + 1e-9) << h;
+    EXPECT_LT(s.body(2).W.norm(), 1e-9);
+  }
+}
+
+// Two planks across each other: the corners of the area of contact are crossings of edges.
+TEST(RigidLaw, PlanksAcrossEachOtherRest) {
+  for (const double h : {1e-2, 1e-3}) {
+    Simulation s =
+        made(model("  low: {shape: {box: [1, 0.2, 0.1]}, mass: 5, position: [0, 0, 0.05]}\n"
+                   "  high: {shape: {box: [0.2, 1, 0.1]}, mass: 3, position: [0.1, 0, 0.152]}",
+                   ", friction: 0.3", 0.5, h));
+    closed(s);
+    EXPECT_NEAR(s.body(2).r[2], 0.15, 1e-9);
+    EXPECT_LT(s.body(2).v.norm() + s.body(2).W.norm(), 1e-9);
+  }
+}
+
 // 550 balls at rest have three rows each.
 TEST(RigidLaw, SaysThatThereAreTooManyRows) {
   std::string balls;

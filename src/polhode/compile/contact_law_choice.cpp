@@ -18,10 +18,11 @@ bool is_sampled(const ShapeSpec& shape) {
   return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
 }
 
-bool has_edges(const ShapeSpec& shape) {
-  return shape.type == "box" || shape.type == "hull" || shape.type == "cylinder" ||
-         shape.type == "cone";
-}
+bool has_edges(const ShapeSpec& shape) { return shape.type == "box" || shape.type == "hull"; }
+
+/// Whether a shape has a rim: where it begins to lie on a face, the row of its lowest point gives
+/// way to those of fixed points of the rim, and not all of these steps end.
+bool has_rim(const ShapeSpec& shape) { return shape.type == "cylinder" || shape.type == "cone"; }
 
 bool gives_way(const std::optional<JointLimitsSpec>& limits) {
   return limits && (limits->band || limits->stiffness);
@@ -42,15 +43,18 @@ ContactLawChoice choose_contact_law(const Model& model) {
       return barrier(format("as the stop of joint '{}' gives way", joint.name));
   int moving = 0, with_edges = 0;
   for (const BodySpec& body : model.bodies) {
-    bool touches = false, edges = false;
+    bool touches = false, edges = false, rim = false;
     for (std::size_t s = 0; s < body.shapes.size(); ++s) {
       if (!contact_side(body, s).touches) continue;
       touches = true;
       edges = edges || has_edges(body.shapes[s]);
+      rim = rim || has_rim(body.shapes[s]);
       if (is_sampled(body.shapes[s]))
         return barrier(format("as body '{}' has a {}", body.name, body.shapes[s].type));
     }
     if (body.fixed) continue;
+    if (rim)
+      return barrier(format("as body '{}' has a rim, which may come to lie flat", body.name));
     if (touches) ++moving;
     if (edges) ++with_edges;
   }

@@ -38,7 +38,7 @@ struct ImpulseRecord {
 /// A point that is a row.
 struct RowRecord {
   ImpulseRecord impulses;
-  double closed, slips;
+  double closed, slips, kept;
 };
 
 /// The record behind others.
@@ -82,7 +82,7 @@ void ContactSet::save(State& state) {
       set(record.impulse, h.impulse);
       set(record.turning, h.turning);
       if (acts_by_rows())
-        append(out, RowRecord{record, h.closed ? 1.0 : 0.0, h.slips ? 1.0 : 0.0});
+        append(out, RowRecord{record, h.closed ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, h.kept});
       else
         append(out, record);
       continue;
@@ -188,6 +188,7 @@ void ContactSet::load(const State& state) {
         const auto row = read_record<RowRecord>(here);
         h.closed = row.closed != 0.0;
         h.slips = row.slips != 0.0;
+        h.kept = row.kept;
       }
       points_.push_back(p);
       continue;

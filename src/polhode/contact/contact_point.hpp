@@ -42,6 +42,7 @@ struct PointHistory {
   /// Impulse of the non-smooth law on a in the last step, world [N s].
   Vec3 impulse = Vec3::Zero();
   Vec3 turning = Vec3::Zero();  ///< Likewise, of rolling and torsional friction [N m s].
+  double kept = 0.0;            ///< Of a row: gap at the start of the run, if negative [m].
   bool closed = false;          ///< The gap was within the activation distance at t_n.
   ContactPhase phase = ContactPhase::rest;
   bool slips = false;
@@ -51,7 +52,7 @@ struct PointHistory {
     return phase == ContactPhase::compression || phase == ContactPhase::restitution;
   }
   /// Whether there is something to carry to the next step.
-  [[nodiscard]] bool remembers() const { return closed || !impulse.isZero(0.0); }
+  [[nodiscard]] bool remembers() const { return closed || !impulse.isZero(0.0) || kept < 0.0; }
   /// Copy of the history with relaxed bristles.
   [[nodiscard]] PointHistory without_bristles() const {
     PointHistory h = *this;

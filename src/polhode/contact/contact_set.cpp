@@ -257,6 +257,7 @@ void ContactSet::open_or_close(Point& p, SpherePairCache& balls, std::span<const
   }
   if (h.closed && !impulses_) p.gap_n = h.gap;
   balls.gap_n = p.gap_n;
+  if (starts_ && acts_by_rows()) h.kept = kept_gap(p.gap_n, touching_gap());
   p.normal_n = n;
   p.place_n = c;
   if (!impulses_) {
@@ -270,6 +271,7 @@ void ContactSet::open_or_close(Point& p, SpherePairCache& balls, std::span<const
 
 bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
                             const StepContext& context) {
+  starts_ = state.ledger.steps == 0;
   const bool same = loaded_ && saved_ == state.contacts;
   const std::vector<Participants> before = pairs_;
   if (!same) {

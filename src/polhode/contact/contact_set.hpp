@@ -194,6 +194,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
     double friction_loss = 0.0;  ///< Of friction impulses [J].
     double absorbed = 0.0;       ///< Of a row: work of its normal impulse in the step [J].
     double gap_after = 0.0;      ///< Of a row, at the end of the step [m].
+    Vec3 turned = Vec3::Zero();  ///< Of a row that acted: rotation of a relative to b in the step.
   };
   /// Sliding state of a point at the last iterate.
   struct Slide {
@@ -230,6 +231,13 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   [[nodiscard]] bool touches(const Point& p) const { return p.gap_after <= touching_gap(); }
   [[nodiscard]] std::optional<std::pair<int, int>> overlapping(
       std::span<const BodyStep> steps) const;
+  [[nodiscard]] bool overlaps_at_end(const Point& p, const BodyStep& a, const BodyStep& b,
+                                     double near) const;
+  [[nodiscard]] bool meets_on_the_way(int point, const BodyStep& a, const BodyStep& b,
+                                      double way) const;
+  [[nodiscard]] std::optional<std::pair<int, int>> passing(std::span<const BodyStep> steps) const;
+  bool add_turning(const Point& p, const State& state, const Vec3& n, StepRow& row) const;
+  [[nodiscard]] bool crosses_now(const Point& p, const State& state) const;
   void find_rows(State& state, std::vector<PairImpact>& list);
   void close_rows(State& state, std::span<const ResolvedImpact> impacts);
   [[nodiscard]] double weight_now(const Point& p, const State& state) const;
@@ -330,6 +338,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   double longest_step_ = 0.0;
   std::vector<double> saved_, totals_;
   bool loaded_ = false, touched_ = false;
+  bool starts_ = false;  ///< The step is the first one.
   double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;
   geometry::BroadPhase broad_;
   std::vector<geometry::Bounds> bounds_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/crossing_edges.hpp>
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/impulse_places.hpp>
 #include <polhode/contact/surface_features.hpp>
@@ -120,7 +121,9 @@ std::optional<double> ContactSet::gap_at_end_of(const ImpulsePoint& at,
     const BothPlaced end = BothPlaced::at_end(a, b);
     const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, end.a, end.b);
     // Behind each other the distance of the curves grows again.
-    const bool passed = value(g.normal).dot(at.normal_n) < 0.0;
+    const bool passed = p.data.pair.kind == GapKind::edge_edge
+                            ? passed_through(p.data, a, b) && crossing(p.data, end)
+                            : value(g.normal).dot(at.normal_n) < 0.0;
     return passed ? -g.distance - 2.0 * (p.data.a->rounding + p.data.b->rounding) : g.distance;
   }
   if (!is_over_surface(p.data.pair.kind)) return gap_at_end(at.number, a, b);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/crossing_edges.hpp>
 #include <polhode/contact/impulse_places.hpp>
-#include <polhode/contact/mouth_rim.hpp>
 #include <polhode/contact/point_weight.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
@@ -22,45 +22,6 @@ constexpr double kMinTurn = 1e-6, kMinMove = 1e-6;
 constexpr double kMaxShift = 0.1, kMaxTilt = 0.1;
 /// Displacement of two edges in a step, as a part of the size, above which they are followed.
 constexpr double kFast = 0.02;
-
-/// Whether a feature pair is of two edges, or of an edge and a rim.
-bool is_of_edges(GapKind kind) { return kind == GapKind::edge_edge || kind == GapKind::rim_edge; }
-
-/// Corrects the gap of the inner rim of a tube and an edge, as correct_edges().
-bool correct_rim(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
-  const geometry::Shape::Edge& f = d.b->edges[d.pair.j];
-  const Vec3 n = value(g.normal), c = value(g.point);
-  const Vec3 p = b.r_n + b.Lambda_n * d.b->corners[f.i];
-  const Vec3 u = b.Lambda_n * (d.b->corners[f.j] - d.b->corners[f.i]);
-  const double t = (c - p).dot(u) / u.squaredNorm();
-  if (!(t > 0.0 && t < 1.0)) return false;
-  const Vec3 out = a.Lambda_n * out_of_rim(*d.a, a.Lambda_n.transpose() * (c - a.r_n));
-  if (n.dot(b.Lambda_n * f.out - out) >= 0.0) return true;
-  g.distance = -g.distance - 2.0 * (d.a->rounding + d.b->rounding);
-  g.normal = -1.0 * g.normal;
-  return true;
-}
-
-/// Corrects the gap of two edges. Edges are in contact where they cross; their ends are corners,
-/// which are paired with the whole solid. Whether the cores have passed through each other follows
-/// from the outward sides of the edges.
-bool correct_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
-  if (d.pair.kind == GapKind::rim_edge) return correct_rim(d, a, b, g);
-  const geometry::Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
-  const auto inner = [](const geometry::Shape& s, const geometry::Shape::Edge& edge,
-                        const BodyStep& step, const Vec3& x) {
-    const Vec3 p = step.r_n + step.Lambda_n * s.corners[edge.i];
-    const Vec3 u = step.Lambda_n * (s.corners[edge.j] - s.corners[edge.i]);
-    const double t = (x - p).dot(u) / u.squaredNorm();
-    return t > 0.0 && t < 1.0;
-  };
-  const Vec3 n = value(g.normal), c = value(g.point);
-  if (!inner(*d.a, e, a, c) || !inner(*d.b, f, b, c)) return false;
-  if (n.dot(b.Lambda_n * f.out - a.Lambda_n * e.out) >= 0.0) return true;
-  g.distance = -g.distance - 2.0 * (d.a->rounding + d.b->rounding);
-  g.normal = -1.0 * g.normal;
-  return true;
-}
 
 /// Placement at the middle of a step. The mean of both orientations is not a rotation, but carries
 /// points by exactly u + θ × z̄ over the step. Half the rotation keeps the sizes of round parts, for
@@ -173,6 +134,7 @@ ImpulsePoint ContactSet::impulse_point(int point, const Gap<double>& at,
     if (sticks && f.mu_static > f.mu && made.friction_across == f.mu)
       made.friction = made.friction_across = f.mu_static;
     made.along = a.Lambda_n * f.direction;
+    made.kept = p.data.history.kept;
   }
   made.rolling = f.rolling;
   made.torsion = f.torsion;
@@ -217,13 +179,19 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     at.normal = constant<double>(p.normal_n);
     at.point = constant<double>(p.place_n);
     const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
+    bool enters = acts_by_rows() && gap_at_end(i, a, b) < 0.0;
     if (is_of_edges(p.data.pair.kind)) {
       if (!acted && least_gap_at_end(p, a, b) > 0.0) continue;
       at = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
-      if (!acts_by_rows() && !correct_edges(p.data, a, b, at)) continue;
+      if (!acts_by_rows()) {
+        if (!correct_edges(p.data, {at_a, at_b}, at)) continue;
+      } else if (p.data.pair.kind == GapKind::edge_edge) {
+        enters = have_met(p.data, a, b);
+        const std::optional<Crossing> start = crossing(p.data, {at_a, at_b});
+        if (!acted && !enters && !(start && start->in_front)) continue;
+      }
     }
     ImpulsePoint point = impulse_point(i, at, steps);
-    const bool enters = acts_by_rows() && gap_at_end(i, a, b) < 0.0;
     if (!acted && !enters && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
     if (!balls_[i].holds && weight_at(p.data, at_a, at_b) < kMinWeight) continue;
     point.impulse = p.data.history.impulse;
@@ -268,7 +236,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     } else {
       g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
     }
-    if (is_of_edges(kind) && !acts_by_rows()) correct_edges(p.data, a, b, g);
+    if (is_of_edges(kind) && !acts_by_rows()) correct_edges(p.data, BothPlaced::at_start(a, b), g);
     const Vec3 n = value(g.normal);
     if (n.dot(at.normal_n) > kPasses) {
       at.normal = n.normalized();
@@ -307,7 +275,10 @@ std::pair<Vec3, Vec3> ContactSet::direction_after(std::span<const BodyStep> step
 }
 
 std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> steps) const {
-  if (acts_by_rows()) return overlapping(steps);
+  if (acts_by_rows()) {
+    const std::optional<std::pair<int, int>> deepest = overlapping(steps);
+    return deepest ? deepest : passing(steps);
+  }
   int last = -1;  // edge of the last pair
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     const Point& p = points_[i];
@@ -368,6 +339,7 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
     p.report.gap_n1 = p.gap_after = nearest_at_end(i, steps);
     p.data.history.impulse.setZero();
     p.data.history.turning.setZero();
+    if (p.gap_after > touching_gap()) p.data.history.kept = 0.0;
   }
   for (std::size_t k = 0; k < list.size(); ++k) {
     const ImpulsePoint& at = list[k];
@@ -376,6 +348,8 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
     if (at.impulse.isZero(0.0)) continue;
     p.data.history.impulse += at.impulse;
     p.data.history.turning += at.turning;
+    const SpherePairCache& balls = balls_[static_cast<std::size_t>(at.number)];
+    p.turned = steps[balls.a].theta - steps[balls.b].theta;
     report_impulse(p, at, losses[k], context.dt);
     p.absorbed += losses[k].normal;
     const auto add = [&](int shape, double sign) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/crossing_edges.hpp>
 #include <polhode/contact/impulse_places.hpp>
 #include <polhode/contact/point_weight.hpp>
 
@@ -21,12 +22,52 @@ std::optional<std::pair<int, int>> ContactSet::overlapping(std::span<const BodyS
     if (p.sensor || least_gap_at_end(p, a, b) > deepest) continue;
     const BothPlaced end = BothPlaced::at_end(a, b);
     if (!balls_[i].holds && weight_at(p.data, end.a, end.b) < kMinWeight) continue;
-    const double gap = nearest_at_end(i, steps);
+    double gap = nearest_at_end(i, steps);
+    if (p.data.pair.kind == GapKind::edge_edge && gap >= 0.0 && have_met(p.data, a, b)) gap = -gap;
+    gap -= p.data.history.kept;
     if (gap >= deepest) continue;
     deepest = gap;
     pair = {shapes_[p.a].body, shapes_[p.b].body};
   }
   return pair;
+}
+
+/// Whether two edges are a row of their own.
+bool ContactSet::crosses_now(const Point& p, const State& state) const {
+  const auto motion = [&](int body) {
+    return body == kGround ? BodyMotion{} : system_->motion(state, body);
+  };
+  const BodyMotion a = motion(shapes_[p.a].body), b = motion(shapes_[p.b].body);
+  const Mat3 Lambda_a = a.Lambda(), Lambda_b = b.Lambda();  // placements refer to these
+  const std::optional<Crossing> found = crossing(p.data, {{a.r, Lambda_a, 0}, {b.r, Lambda_b, 6}});
+  return found && found->in_front;
+}
+
+/// Adds the torsional and rolling friction of a contact to its row.
+/// @returns whether one of them has begun to stick: the bodies have not rotated in the step, but
+/// the midpoint rule has reversed their angular velocity.
+bool ContactSet::add_turning(const Point& p, const State& state, const Vec3& n,
+                             StepRow& row) const {
+  const FrictionLaw& f = p.data.friction;
+  if (f.torsion == 0.0 && f.rolling == 0.0) return false;
+  TurningRow& t = row.turning;
+  t.torsion = f.torsion;
+  t.rolling = f.rolling;
+  t.size = std::min(p.data.a->detail, p.data.b->detail);
+  t.impulse = p.data.history.turning;
+  const auto omega = [&](int shape) {
+    const int body = shapes_[static_cast<std::size_t>(shape)].body;
+    return body == kGround ? Vec3(Vec3::Zero()) : system_->motion(state, body).omega();
+  };
+  const Vec3 turns = (omega(p.a) - omega(p.b)) * step_length_;
+  const auto is_zero = [&](double angle) { return std::abs(angle) * t.size <= touching_gap(); };
+  const auto across = [&](const Vec3& x) { return Vec3(x - n.dot(x) * n).norm(); };
+  const bool acted = row.was_closed && p.touched;
+  const bool still = acted && f.torsion > 0.0 && is_zero(n.dot(p.turned)),
+             rolls_not = acted && f.rolling > 0.0 && is_zero(across(p.turned));
+  t.torsion_stuck = still && is_zero(n.dot(turns));
+  t.rolling_stuck = rolls_not && is_zero(across(turns));
+  return (still && !t.torsion_stuck) || (rolls_not && !t.rolling_stuck);
 }
 
 /// Lists the rows that were closed at t_n or touch at t_{n+1}, if any of them, or one that is
@@ -40,6 +81,7 @@ void ContactSet::find_rows(State& state, std::vector<PairImpact>& list) {
     const PointHistory& h = p.data.history;
     const bool touch = touches(p);
     if (p.sensor || !(touch || h.closed)) continue;
+    if (!p.touched && p.data.pair.kind == GapKind::edge_edge && !crosses_now(p, state)) continue;
     PairImpact r = row_at(p, state);
     r.impact.wanted = 0.0;
     r.impact.given = std::abs(step_length_) * p.report.normal_force;
@@ -51,6 +93,7 @@ void ContactSet::find_rows(State& state, std::vector<PairImpact>& list) {
                     .touches = touch,
                     .restitution = p.restitution,
                     .absorbed = p.gap_n <= touching_gap() ? 0.0 : std::max(0.0, p.absorbed)};
+    if (add_turning(p, state, r.impact.on_a.head<3>(), *r.row)) r.row->stops = true;
     changes = changes || r.row->changes();
     settling_.push_back(i);
     list.push_back(std::move(r));

@@ -20,7 +20,7 @@ void UnilateralRows::add_to(ConstraintCheck& check, const State& state, const Tr
   for (const ImpulsePoint& p : points_) {
     const double force = std::max(0.0, p.normal.dot(p.impulse)) / std::abs(dt_);
     if (force == 0.0) continue;
-    check.work_defect += force * std::abs(impulsive_->gap_after(steps_, p));
+    check.work_defect += force * std::abs(impulsive_->gap_after(steps_, p) - p.kept);
     check.work_scale += force * (system_->length_scale() + p.place.lpNorm<1>());
   }
   check.broken = broken();
@@ -36,7 +36,8 @@ std::string UnilateralRows::broken() const {
       return format("{} would be passed", name_of(stop));
   if (!contacts_) return {};
   if (const auto pair = impulsive_->passed(steps_))
-    return format("{} would overlap", names_of(pair->first, pair->second));
+    return format("{} would overlap or pass through each other",
+                  names_of(pair->first, pair->second));
   double gained = 0.0, forces = 0.0, most = 0.0;
   const ImpulsePoint* worst = nullptr;
   for (const ImpulsePoint& p : points_) {

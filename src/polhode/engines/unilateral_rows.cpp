@@ -141,7 +141,7 @@ void UnilateralRows::put_point(int number) {
   const auto [n, place] = impulsive_->direction_after(steps_, p);
   rows_.back().by_a << n, (place - step_of(p.a).r_n1).cross(n);
   rows_.back().by_b << -n, -(place - step_of(p.b).r_n1).cross(n);
-  rows_.back().way = impulsive_->gap_after(steps_, p);
+  rows_.back().way = impulsive_->gap_after(steps_, p) - p.kept;
   blocks_.push_back({.kind = ImpulseRows::Kind::normal, .first = normal});
   if (!rests(p)) return;
   const auto bound = [&](Eigen::Index size, double along, double across) {

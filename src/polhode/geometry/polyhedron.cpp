@@ -81,6 +81,7 @@ void take_triangles(Shape& shape, const TriangleSurface& surface) {
     } else {
       const Vec3 n_2 = shape.planes[s.second].normal;
       e.out = (n_1 + n_2).normalized();
+      e.cone = n_1.dot(e.out);
       // Convex if the second triangle lies below the plane of the first.
       Vec3 inside_2 = Vec3::Zero();
       for (int k : surface.triangles[s.second]) inside_2 += surface.points[k] / 3.0;

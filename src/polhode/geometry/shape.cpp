@@ -149,7 +149,7 @@ Shape capsule(std::string_view where, double diameter, double length, const Shap
   s.centre = place.origin;
   const Vec3 to_end = 0.5 * length * place.axes.col(2);
   s.corners = {place.origin - to_end, place.origin + to_end};
-  s.edges.push_back({0, 1, Vec3::Zero(), true, false, false});
+  s.edges.push_back({.i = 0, .j = 1});
   all_corners_meet(s);
   bound_corners(s);
   return s;

@@ -43,9 +43,11 @@ struct Shape {
   struct Edge {
     int i = 0, j = 0;         ///< Corners.
     Vec3 out = Vec3::Zero();  ///< Unit, outward: bisector of the two faces.
-    bool convex = true;       ///< Paired with other edges; else it only corrects sums of triangles.
-    bool open = false;        ///< One triangle only (border of a height field).
-    bool flat = false;        ///< Both faces in one plane.
+    /// Cosine of half the angle between the normals of the faces; −1: any direction across.
+    double cone = -1.0;
+    bool convex = true;  ///< Paired with other edges; else it only corrects sums of triangles.
+    bool open = false;   ///< One triangle only (border of a height field).
+    bool flat = false;   ///< Both faces in one plane.
   };
   struct Plane {
     Vec3 normal = Vec3::UnitZ();

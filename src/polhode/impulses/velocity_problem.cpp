@@ -46,7 +46,9 @@ class Course {
     for (std::size_t i = 0; i < approach_.size(); ++i)
       if (approach_[i] > 0.0)
         return std::any_of(problem_.contacts.begin(), problem_.contacts.end(),
-                           [](const ContactRows& c) { return c.tangents >= 0; });
+                           [](const ContactRows& c) {
+                             return c.tangents >= 0 || c.torsion.first >= 0 || c.rolling.first >= 0;
+                           });
     return false;
   }
   [[nodiscard]] bool returns() const {
@@ -76,6 +78,10 @@ class Course {
     }
   }
   [[nodiscard]] std::vector<Index> held() const;
+  /// Row problem of these velocities, with the bounds of all friction.
+  /// @param carried  Normal impulse of a contact besides that of its row.
+  template <class Carried>
+  [[nodiscard]] RowProblem rows(const Vec& velocities, const Carried& carried) const;
   /// Rounding of a row's velocity after the impulses of the step and of this instant, to which
   /// row problems are solved.
   [[nodiscard]] double floor_of(Index row) const {
@@ -83,7 +89,7 @@ class Course {
         problem_.A.row(row).cwiseAbs().dot(impulses_.cwiseAbs()) + std::abs(problem_.w[row]);
     for (const ContactRows& c : problem_.contacts)
       terms += std::abs(problem_.A(row, c.normal)) * c.impulse;
-    return problem_.rounding + kFloor * terms;
+    return std::max(problem_.noise, problem_.rounding + kFloor * terms);
   }
   const VelocityProblem& problem_;
   Vec w_, impulses_;
@@ -109,6 +115,33 @@ std::vector<Index> Course::held() const {
       rows.push_back(c.tangents);
       rows.push_back(c.tangents + 1);
     }
+    if (c.torsion.stuck) rows.push_back(c.torsion.first);
+    for (Index k = 0; k < 2 && c.rolling.stuck; ++k) rows.push_back(c.rolling.first + k);
+  }
+  return rows;
+}
+
+template <class Carried>
+RowProblem Course::rows(const Vec& velocities, const Carried& carried) const {
+  RowProblem rows(velocities.size());
+  rows.A = problem_.A;
+  rows.b = velocities;
+  if (problem_.lengths.size() > 0) rows.lengths = problem_.lengths;
+  for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
+    const ContactRows& c = problem_.contacts[i];
+    rows.blocks.push_back({.kind = Kind::normal, .first = c.normal});
+    const auto bound = [&](Index first, Index size, const Vec3& half_axes, double used) {
+      if (first < 0) return;
+      rows.blocks.push_back({.kind = Kind::friction,
+                             .first = first,
+                             .size = size,
+                             .normal = c.normal,
+                             .half_axes = half_axes,
+                             .carried = carried(i, used)});
+    };
+    bound(c.tangents, 2, c.half_axes, c.friction);
+    bound(c.torsion.first, 1, {c.torsion.length, 0.0, 0.0}, c.torsion.used);
+    bound(c.rolling.first, 2, {c.rolling.length, c.rolling.length, 0.0}, c.rolling.used);
   }
   return rows;
 }
@@ -128,8 +161,9 @@ void Course::before_impact() {
   const auto n = static_cast<Index>(C.size());
   Mat A_CC = A(C, C), back(static_cast<Index>(H.size()), n);
   if (!H.empty()) {
-    Eigen::CompleteOrthogonalDecomposition<Mat> of_held(Mat(A(H, H)));
-    of_held.setThreshold(kCarried);
+    Eigen::CompleteOrthogonalDecomposition<Mat> of_held;
+    of_held.setThreshold(kCarried);  // before the factors, whose rank it determines
+    of_held.compute(A(H, H));
     const Vec stop = -of_held.solve(Vec(w_(H)));
     back = of_held.solve(Mat(A(H, C)));
     stored += 0.5 * stop.dot(A(H, H) * stop);
@@ -189,29 +223,16 @@ void Course::before_impact() {
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!contacts[i].closes()) carried_[i] = contacts[i].impulse;
-    carried_[i] = std::max(0.0, carried_[i] - contacts[i].friction);
   }
 }
 
 /// A row problem from the present velocities. @param carried  Part of the carried impulses.
 Course::Part Course::part(const Vec& targets, double carried) {
-  const Index n = w_.size();
-  RowProblem rows(n);
-  rows.A = problem_.A;
-  rows.b = w_ - targets;
-  for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
-    const ContactRows& c = problem_.contacts[i];
-    rows.blocks.push_back({.kind = Kind::normal, .first = c.normal});
-    if (c.tangents < 0) continue;
-    rows.blocks.push_back({.kind = Kind::friction,
-                           .first = c.tangents,
-                           .size = 2,
-                           .normal = c.normal,
-                           .half_axes = c.half_axes,
-                           .carried = carried * carried_[i]});
-  }
-  Part done{.w = {}, .p = Vec::Zero(n)};
-  const RowReport report = rows.solve(done.p, problem_.rounding);
+  const RowProblem problem = rows(w_ - targets, [&](std::size_t i, double used) {
+    return carried * std::max(0.0, carried_[i] - used);
+  });
+  Part done{.w = {}, .p = Vec::Zero(w_.size())};
+  const RowReport report = problem.solve(done.p, problem_.rounding);
   result_.report.iterations += report.iterations;
   result_.report.sweeps += report.sweeps;
   if (!report.converged && !(report.error <= result_.report.error)) {
@@ -288,23 +309,10 @@ void Course::restore(int parts) {
 /// Friction of rows that began to stick ends their slip, with total impulses as unknowns so that
 /// normal ones may also decrease.
 void Course::stop_slip() {
-  const std::vector<ContactRows>& contacts = problem_.contacts;
-  RowProblem rows(w_.size());
-  rows.A = problem_.A;
-  rows.b = w_;
-  for (const ContactRows& c : contacts) {
-    rows.blocks.push_back({.kind = Kind::normal, .first = c.normal});
-    rows.given[c.normal] = c.impulse;
-    if (c.tangents < 0) continue;
-    rows.blocks.push_back({.kind = Kind::friction,
-                           .first = c.tangents,
-                           .size = 2,
-                           .normal = c.normal,
-                           .half_axes = c.half_axes,
-                           .carried = -c.friction});
-  }
+  RowProblem problem = rows(w_, [](std::size_t, double used) { return -used; });
+  for (const ContactRows& c : problem_.contacts) problem.given[c.normal] = c.impulse;
   Vec p = Vec::Zero(w_.size());
-  result_.report = rows.solve(p, problem_.rounding);
+  result_.report = problem.solve(p, problem_.rounding);
   w_ += problem_.A * p;
   impulses_ += p;
 }

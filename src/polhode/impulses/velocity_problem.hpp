@@ -7,6 +7,14 @@
 
 namespace polhode {
 
+/// Torsional friction, one row of a contact, or rolling friction, two rows.
+struct TurningRows {
+  Eigen::Index first = -1;  ///< −1: none.
+  double length = 0.0;      ///< Largest angular impulse per unit normal impulse [m].
+  double used = 0.0;        ///< Of the step: |p|/length [N s].
+  bool stuck = false;       ///< At t_n: without relative rotation.
+};
+
 /// A contact or stop at the end of a step in which it was a unilateral row, with its friction.
 struct ContactRows {
   Eigen::Index normal = 0;     ///< Row of the normal velocity, positive: separating.
@@ -20,6 +28,7 @@ struct ContactRows {
   double impulse = 0.0;   ///< Of the step along the normal, not negative [N s].
   double friction = 0.0;  ///< Of the step, as a part of the cone's axes: |p_t|/μ [N s].
   double absorbed = 0.0;  ///< D = −p Δg/h: work of the normal impulse of a closing row [J].
+  TurningRows torsion = {}, rolling = {};
 
   /// Whether it closes in the step.
   [[nodiscard]] bool closes() const { return !was_closed && touches; }
@@ -35,10 +44,13 @@ struct ContactRows {
 /// returns e² of the work of compression, never more than all. Energy cannot rise, whatever the
 /// masses, and the result does not depend on the order of the rows. @eq{velocity-problem}
 struct VelocityProblem {
-  Mat A;  ///< Symmetric: velocities of rows by unit impulses; joints included [1/kg].
-  Vec w;  ///< Velocities of the rows at the end of the step, by drives as well [m/s].
+  Mat A;        ///< Symmetric: velocities of rows by unit impulses; joints included [1/kg].
+  Vec w;        ///< Velocities of the rows at the end of the step, by drives as well [m/s].
+  Vec lengths;  ///< As those of RowProblem; empty: all 1.
   std::vector<ContactRows> contacts;
   double rounding = 0.0;  ///< Of velocities [m/s].
+  /// Rounding of positions over the step: rows that separate no faster than that stay closed [m/s].
+  double noise = 0.0;
   /// Energy of the velocities of the step that joints do not admit, by which it exceeds that of w.
   double projected = 0.0;
 

@@ -98,6 +98,13 @@ void Simulation::Impl::warn_of_errors(std::vector<std::string>& list) const {
                "the mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter "
                "steps, or give a tolerance",
                whose.empty() ? "a body" : whose, e.largest, e.time));
+  const std::int64_t without = state.ledger.steps - e.steps;
+  if (!method.control.step && system.contacts() && 2 * without > state.ledger.steps)
+    list.push_back(format(
+        "the tolerance was watched in {} of {} steps only: while contacts of this law touch, "
+        "steps have no estimate of their error. Use law: rigid if the model allows it, or "
+        "compare with a run of half the step",
+        e.steps, state.ledger.steps));
   if (velocity_residual > kFarOff * velocity_scale)
     list.push_back(
         format("velocities violate the joints by {:.2g} of the largest speeds at t = {:.6g} s. "

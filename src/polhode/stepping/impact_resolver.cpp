@@ -117,6 +117,7 @@ std::vector<Vec6> ImpactResolver::velocities(const State& state, const Island& i
 Work ImpactResolver::settle(State& state) {
   settled_.assign(rows_.size(), {});
   jumped_.clear();
+  largest_jump_ = 0.0;
   resting_.clear();
   numbers_.resize(rows_.size() - before_contacts_);
   std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(before_contacts_));
@@ -366,7 +367,9 @@ void ImpactResolver::apply(State& state, const Island& island, const std::vector
     Impact& impact = rows_[row.impact].impact;
     const double p = part * row.impulse,
                  lost = -p * (row.before + 0.5 * part * (row.speed(v) - row.before));
-    if (i > 0 && rows[i - 1].has_friction) {
+    if (row.turns) {
+      s.friction_loss += lost;
+    } else if (i > 0 && rows[i - 1].has_friction) {
       s.friction += p * impact.across;
       impact.friction_impulse += p * impact.across;
       s.friction_loss += lost;
@@ -403,6 +406,8 @@ double ImpactResolver::jump(State& state, const Island& island, const std::vecto
     for (std::size_t k = 0; k < dv.size(); ++k) state.node_v[k] += dv[k];
   }
   for (std::size_t i = 0; i < jumps.size(); ++i) {
+    largest_jump_ = std::max({largest_jump_, jumps[i].head<3>().norm() / system_->length_scale(),
+                              jumps[i].tail<3>().norm()});
     const int slot = system_->slot(island.bodies[i]), lane = slot % kLanes;
     const Vec3 dW = system_->motion(state, island.bodies[i]).q.conjugate() * jumps[i].tail<3>();
     BodyBlock& block = state.blocks[slot / kLanes];

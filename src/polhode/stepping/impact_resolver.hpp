@@ -38,6 +38,9 @@ class ImpactResolver {
   /// Adds the impacts of the last settle() that were not solved to those of the run.
   /// @param t  Their time [s].
   void report(double t, UnsolvedImpacts& impacts) const;
+  /// Largest change of a body's velocity, over the size of the model, or angular velocity by the
+  /// impacts just settled [1/s].
+  [[nodiscard]] double largest_jump() const { return largest_jump_; }
   /// Work of drives in the impacts just settled [J].
   [[nodiscard]] double drive_work() const { return drive_work_; }
 
@@ -148,6 +151,7 @@ class ImpactResolver {
   std::vector<double> pressed_nodes_;    ///< On free nodes, three each; empty: none.
   bool pulls_ = false;                   ///< Rows of tied bodies have been settled.
   double drive_work_ = 0.0;              ///< Of the last impacts [J].
+  double largest_jump_ = 0.0;            ///< Likewise [1/s].
   UnsolvedImpacts unsolved_;             ///< Of the last impacts.
   std::vector<int> numbers_;  ///< Rows of contacts, in the order of the contacts' list; −1: none.
 };

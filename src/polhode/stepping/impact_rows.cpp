@@ -63,6 +63,21 @@ std::vector<ImpactResolver::Island> ImpactResolver::islands() const {
   return list;
 }
 
+namespace {
+
+/// Axes of the turning rows of a contact: its normal n for torsion, two tangents for rolling.
+std::vector<Vec3> turning_axes(const StepRow& row, const Vec3& n) {
+  std::vector<Vec3> axes;
+  if (row.turning.torsion > 0.0) axes.push_back(n);
+  if (row.turning.rolling > 0.0) {
+    axes.push_back(n.unitOrthogonal());
+    axes.push_back(n.cross(axes.back()));
+  }
+  return axes;
+}
+
+}  // namespace
+
 std::vector<ImpactResolver::Row> ImpactResolver::start_rows(const State& state,
                                                             const Island& island) {
   std::vector<Row> rows;
@@ -153,13 +168,20 @@ std::vector<ImpactResolver::Row> ImpactResolver::start_rows(const State& state,
     const Impact& impact = rows_[k].impact;
     const SurfaceImpact* hit = surface(k);
     add(k, hit ? of_surface(*hit, hit->normal) : of_pair(k, impact.on_a, impact.on_b), false);
-    if (impact.mu == 0.0) continue;
-    for (const Vec3* t : {&impact.along, &impact.across}) {
-      Vec6 on_a, on_b;
-      on_a << *t, impact.arm_a.cross(*t);
-      on_b << -*t, -impact.arm_b.cross(*t);
-      add(k, hit ? of_surface(*hit, *t) : of_pair(k, on_a, on_b), t == &impact.along);
-    }
+    if (impact.mu != 0.0)
+      for (const Vec3* t : {&impact.along, &impact.across}) {
+        Vec6 on_a, on_b;
+        on_a << *t, impact.arm_a.cross(*t);
+        on_b << -*t, -impact.arm_b.cross(*t);
+        add(k, hit ? of_surface(*hit, *t) : of_pair(k, on_a, on_b), t == &impact.along);
+      }
+    if (rows_[k].row)
+      for (const Vec3& axis : turning_axes(*rows_[k].row, impact.on_a.head<3>())) {
+        Vec6 on_a = Vec6::Zero();
+        on_a.tail<3>() = axis;
+        add(k, of_pair(k, on_a, -on_a), false);
+        rows.back().turns = true;
+      }
   }
   if (!on_nodes.empty()) solver_->press_nodes({});
   return rows;

@@ -33,6 +33,7 @@ struct ImpactResolver::Row {
   double mobility = 0.0;                     ///< J X.
   double before = 0.0, impulse = 0.0;        ///< Initial J v [m/s]; [N s].
   bool has_friction = false;                 ///< It is the first of two tangents.
+  bool turns = false;                        ///< Torsional or rolling friction.
 
   [[nodiscard]] double speed(const std::vector<Vec6>& v) const {
     double sum = 0.0;

@@ -14,6 +14,8 @@ namespace {
 
 /// Rounding of a velocity relative to the sum of its terms.
 constexpr double kVelocityRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// Rounding of positions relative to their size.
+constexpr double kPlaceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -106,6 +108,7 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
   VelocityProblem problem;
   const auto n = static_cast<Eigen::Index>(rows.size());
   problem.A.resize(n, n);
+  problem.lengths = Vec::Ones(n);
   problem.w.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     Row& row = rows[static_cast<std::size_t>(i)];
@@ -118,6 +121,10 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
       problem.A(i, j) = problem.A(j, i) = row.speed_by(rows[static_cast<std::size_t>(j)]);
   }
   problem.rounding = rounding;
+  double far = system_->length_scale();
+  for (const int body : island.bodies)
+    far = std::max(far, system_->motion(state, body).r.lpNorm<Eigen::Infinity>());
+  problem.noise = 2.0 * kPlaceRounding * far / std::abs(dt_);
   problem.projected = island.projected;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
@@ -136,6 +143,24 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
       c.half_axes = {impact.mu, impact.mu_across, 0.0};
       c.friction = std::hypot(impact.along.dot(impact.friction_impulse) / impact.mu,
                               impact.across.dot(impact.friction_impulse) / impact.mu_across);
+      i += 2;
+    }
+    const TurningRow& turning = of_step.turning;
+    const Vec3 normal = impact.on_a.head<3>();
+    const double about = normal.dot(turning.impulse);
+    if (turning.torsion > 0.0) {
+      c.torsion = {.first = ++i,
+                   .length = turning.torsion,
+                   .used = std::abs(about) / turning.torsion,
+                   .stuck = turning.torsion_stuck};
+      problem.lengths[i] = turning.size;
+    }
+    if (turning.rolling > 0.0) {
+      c.rolling = {.first = i + 1,
+                   .length = turning.rolling,
+                   .used = (turning.impulse - about * normal).norm() / turning.rolling,
+                   .stuck = turning.rolling_stuck};
+      problem.lengths[i + 1] = problem.lengths[i + 2] = turning.size;
       i += 2;
     }
     problem.contacts.push_back(c);

@@ -14,6 +14,7 @@
 #include <polhode/stepping/instant.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/stored_rates.hpp>
+#include <polhode/system/impulsive_contacts.hpp>
 #include <polhode/system/regular_state.hpp>
 
 namespace polhode {
@@ -176,7 +177,8 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   impacts_.find_turns(state);
   if (BodyContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
     ledger_.add(state, impacts_.find(state, *contacts));
-    state.past_count = 0;  // measured: steps then start best from the velocities at t_n
+    // Measured: steps then start best from the velocities at t_n.
+    if (!are_rows(contacts)) state.past_count = 0;
   }
   if (watches) stopped_ = stopped_ || impacts_.touched();
   impacts_.leave_still(state);

@@ -37,6 +37,8 @@ class SingleStep {
   [[nodiscard]] double error_estimate() const { return error_; }
   /// Whether velocities jumped at the end of the last accepted trial, in an impact of a joint stop.
   [[nodiscard]] bool jumped() const { return jumped_; }
+  /// Largest of these jumps, see ImpactResolver::largest_jump().
+  [[nodiscard]] double jump() const { return impacts_.largest_jump(); }
   /// Whether a joint stop was active in the last accepted trial.
   [[nodiscard]] bool stopped() const { return stopped_; }
 

@@ -73,9 +73,11 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
         automatic() && refused.count == 0 && H > least_step() ? allowed_error(state, H) : 0.0;
     report.newton = run_stages(state, stages, H, fresh);
     const bool met_stop = extrapolates() && table->met_stop();
-    // Contacts handle velocity jumps themselves.
-    const bool stopped = !composed() && !system.contacts() && single.stopped();
-    const bool impact = stopped && single.jumped();
+    // Jumps below the wanted error do not disturb its estimate.
+    const bool jumped = !composed() && watches_jumps() && single.jumped();
+    const bool impact = jumped && (!system.contacts() ||
+                                   (automatic() && H * single.jump() > allowed_error(before, H)));
+    const bool stopped = impact || (!composed() && !system.contacts() && single.stopped());
     Verdict verdict{.fine = report.newton.converged && !met_stop, .factor = 0.5};
     if (verdict.fine && automatic()) {
       const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
@@ -94,9 +96,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       accept(state, H, verdict, report.newton.iterations, kept);
       if (table && automatic()) count_scheme(state, H, columns(before));
       if (report.newton.hard) record_hard(state);
+      if (automatic() ? impact : jumped && system.contacts()) state.past_count = 0;
       record(state, H, verdict.error);
       pass(state, ahead);
-      if (impact && automatic()) state.past_count = 0;
       ++state.ledger.steps;
       single.ledger().close_step(state);
       return report;

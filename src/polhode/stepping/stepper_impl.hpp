@@ -17,6 +17,7 @@
 #include <polhode/stepping/step_reach.hpp>
 #include <polhode/stepping/step_verdict.hpp>
 #include <polhode/stepping/stepper.hpp>
+#include <polhode/system/impulsive_contacts.hpp>
 #include <polhode/system/time_breaks.hpp>
 
 namespace polhode {
@@ -135,6 +136,12 @@ struct Stepper::Impl {
   /// beyond the break.
   [[nodiscard]] double landing(const TimeBreak& at) const {
     return looks_at_end() ? at.t * (1.0 - kJustBeside) : at.t;
+  }
+
+  /// Whether the error of a step is judged that contains a jump of velocities. Contacts by forces
+  /// handle these themselves, without an estimate.
+  [[nodiscard]] bool watches_jumps() const {
+    return !system.contacts() || are_rows(system.contacts().get());
   }
 
   /// Drops the past steps: after a jump of accelerations or velocities.

@@ -137,7 +137,8 @@ void Stepper::Impl::find_length(State& state, double way) {
 Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State& reached,
                                                  double H) const {
   Verdict v;
-  v.error = jump_difference(system, from, reached, H);
+  // Contacts are rows: the jump alone, as other forces do not stop the bodies.
+  v.error = system.contacts() ? H * single.jump() : jump_difference(system, from, reached, H);
   const double allowed = kImpactError * control.tolerance;
   v.fine = v.error <= allowed || H <= least_step();
   const double wanted = v.error > 0.0 ? kSafety * allowed / v.error : kMaxFactor;
@@ -164,14 +165,14 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
     power = 1.0 / (control.order + 1.0);
     safety = kSafetyComposed;
   } else if (from.past_count < 2 && !fresh) {
-    // find_length() has tried these steps, or they are as short as the impact's. With contacts
-    // there is no estimate.
-    if (system.contacts()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMaxFactor);
+    // find_length() has tried these steps, or they are as short as the impact's. With contacts by
+    // forces there is no estimate.
+    if (!watches_jumps()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMaxFactor);
     return v;
   } else {
     if (!fresh) error = single.error_estimate();
     // Past steps may be noise, or give no information: then the step is measured by itself.
-    if (!system.contacts() && (fresh || (*error > allowed && refused.count > 0))) {
+    if (watches_jumps() && (fresh || (*error > allowed && refused.count > 0))) {
       const auto halves = error_by_halves(from, reached, H);
       error = halves && error ? std::min(*error, *halves) : halves;
       longest = 1.0;  // the past would reject a longer one

@@ -25,14 +25,24 @@ struct ImpactCourse {
   double fallen = 0.0;       ///< 2 a h by attracting forces after the bodies separated [m²/s²].
 };
 
+/// Torsional and rolling friction of a contact that was a row of the step.
+struct TurningRow {
+  double torsion = 0.0, rolling = 0.0;  ///< Angular impulse over normal impulse [m]; 0: none.
+  double size = 1.0;            ///< Length that turns their velocities into those of points.
+  Vec3 impulse = Vec3::Zero();  ///< On a, in the step [N m s].
+  /// The relative rotation about the normal, or across it, was zero over the step and before it.
+  bool torsion_stuck = false, rolling_stuck = false;
+};
+
 /// A contact or a stop that was a row of the step, for its velocity problem. @eq{velocity-problem}
 struct StepRow {
   bool was_closed = false;  ///< At t_n.
   bool stuck = false;       ///< Its slip was zero over the step, and before it.
-  bool stops = false;       ///< Its slip was not zero before the step, but over it.
+  bool stops = false;       ///< Its slip or rotation was not zero before the step, but over it.
   bool touches = false;     ///< At t_{n+1}.
   double restitution = 0.0;
   double absorbed = 0.0;  ///< Work of its impulse in the step; 0 if it touched at t_n [J].
+  TurningRow turning = {};
 
   [[nodiscard]] bool closes() const { return !was_closed && touches; }
   /// Whether its velocity, or its slip, has to change.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <polhode/system/body_contacts.hpp>
 #include <polhode/system/pair_terms.hpp>
 #include <polhode/system/state.hpp>
 
@@ -29,6 +30,7 @@ struct ImpulsePoint {
   Vec3 place = Vec3::Zero();
   Vec3 normal_n = Vec3::UnitZ(), place_n = Vec3::Zero();  ///< At t_n.
   double gap = 0.0;                                       ///< At t_n [m].
+  double kept = 0.0;                                      ///< See kept_gap() [m].
   double rate = 0.0;                                      ///< Of the gap at t_n [m/s].
   /// Of a relative to b at the contact point at t_n [m/s].
   Vec3 velocity = Vec3::Zero();
@@ -80,7 +82,8 @@ class ImpulsiveContacts {
   [[nodiscard]] virtual std::pair<Vec3, Vec3> direction_after(std::span<const BodyStep> steps,
                                                               const ImpulsePoint& point) const = 0;
   /// Two bodies that overlap at the end of the steps, as no point found them: rows by their gaps,
-  /// other laws if an edge enters a body in a fast step.
+  /// also if they have passed through each other within the step, other laws if an edge enters a
+  /// body in a fast step.
   [[nodiscard]] virtual std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const = 0;
   /// Commits an accepted step like BodyContacts::commit().
@@ -89,6 +92,13 @@ class ImpulsiveContacts {
                                std::span<const ImpulseLoss> losses,
                                const ImpulseSearch& search) = 0;
 };
+
+/// Whether contacts are rows of the step: velocities jump only where one closes, and its error can
+/// be estimated as that of a step with joints.
+[[nodiscard]] inline bool are_rows(BodyContacts* contacts) {
+  const ImpulsiveContacts* const impulsive = contacts ? contacts->impulsive() : nullptr;
+  return impulsive && impulsive->impulses() && impulsive->impulses()->rigid;
+}
 
 /// Number of steps of gravity whose speed increment is the smallest rebound speed; slower rebounds
 /// are suppressed [-].

@@ -37,4 +37,10 @@ inline constexpr double kTouchingGap = 1e-11;
 /// Overlap that rows which are solved cannot leave, in gaps that count as touching.
 inline constexpr double kOverlapGaps = 100.0;
 
+/// Gap of which a row does not fall short: zero, or that of the start of the run, of bodies that
+/// overlapped then by more than rows leave. To push these apart would give them energy.
+[[nodiscard]] inline double kept_gap(double at_start, double touching) {
+  return at_start < -kOverlapGaps * touching ? at_start : 0.0;
+}
+
 }  // namespace polhode

@@ -443,11 +443,15 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
       // Keys of an object may be added; objects, and likely misspellings of objects, may not.
       const bool holds_names = k == 1 && (parts[0] == "bodies" || parts[0] == "joints" ||
                                           parts[0] == "loads" || parts[0] == "variables");
-      const bool may_add = !holds_names && (last || k == 0 || parts[0] == "import");
+      const bool holds_keys =
+          k == 1 && (parts[0] == "contacts" || parts[0] == "analysis" || parts[0] == "output");
+      const bool may_add = !holds_names && (last || k == 0 || holds_keys || parts[0] == "import");
       if (!next && !may_add) {
         const std::vector<std::string> names = key_names(*node);
         diagnostics.add(place, path, format("{} has no entry {}", here, quote(part)),
-                        did_you_mean(part, names) + "Entries: " + name_list(names) + ".");
+                        names.empty()
+                            ? "It is empty."
+                            : did_you_mean(part, names) + "Entries: " + name_list(names) + ".");
         return;
       }
       if (!next) {
