@@ -180,11 +180,17 @@ def linearize(
     Loads are evaluated at the time of the state. Derivatives are differences of sixth order of the accelerations, which
     are solved for to round-off: their errors are 1e-11 of the largest entry, or less. Returns a StateSpace. Raises
     KeyError for unknown names, ValueError if coordinates and positions do not determine the configuration, as for a
-    free body that rotates, or for solids, ModelError for a faulty model or an unknown input.
+    free body that rotates, for solids, or where a contact or stop with the law rigid is closed, ModelError for a
+    faulty model or an unknown input.
     """
     if not isinstance(simulation, Simulation):
         simulation = Simulation(simulation, overrides)
     engine = simulation._engine
+    if touching := _native.touching(engine.copy()):
+        raise ValueError(
+            f"{touching[0]} is closed here, and the motion is not linear about it. Linearise where nothing touches, "
+            "or use polhode.modes, in which contacts and stops with a force hold like joints"
+        )
     chart = _Chart(engine)
     T = chart.free_directions()
     f = T.shape[1]

@@ -52,12 +52,13 @@ class Mode:
 
 
 class Modes(list):  # type: ignore[type-arg]
-    """Modes of a model: divergence first, then by |λ|. total_mass [kg]; warnings, texts; spin [rad/s],
-    the speed of the frame in which they are seen."""
+    """Modes of a model: divergence first, then by |λ|. total_mass [kg]; warnings, texts; held, contacts and
+    stops that hold like joints (law: rigid); spin [rad/s], the speed of the frame in which they are seen."""
 
     total_mass: float
     spin: float
     warnings: "list[str]"
+    held: "list[str]"
 
     @property
     def frequencies(self) -> Any:
@@ -88,6 +89,7 @@ def _modes_of(found: "dict[str, Any]") -> Modes:
     result = Modes(Mode(values) for values in found["modes"])
     result.total_mass = found["total_mass"]
     result.warnings = found["warnings"]
+    result.held = found["held"]
     result.spin = found["spin"]
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=3)
@@ -150,4 +152,4 @@ def matrices(simulation: "Union[Simulation, Model]") -> Matrices:
 
     if isinstance(simulation, Model):
         simulation = Simulation(simulation)
-    return Matrices(*(sparse.csr_array(a) for a in _native.matrices(simulation._engine)))
+    return Matrices(*(sparse.csr_array(a) for a in _native.matrices(simulation._engine.copy())))

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/modal.hpp>
 
@@ -47,6 +49,7 @@ nb::dict report_of(const ModalAnalysis& analysis) {
   result["modes"] = list;
   result["total_mass"] = analysis.report().total_mass;
   result["warnings"] = nb::cast(analysis.report().warnings);
+  result["held"] = nb::cast(analysis.report().held);
   result["spin"] = analysis.spin();
   return result;
 }
@@ -102,13 +105,30 @@ Array matrix(const Mat& A) {
 nb::tuple matrices(Engine& engine) {
   const Engine::Use simulation = engine.use();
   ModalMatrices m(simulation->system(), simulation->state(), {});
+  if (const StaticRows* rows = m.statics().rows();
+      rows && simulation->model().analysis.type == "dynamics")
+    if (const std::vector<std::string> touching = rows->touching(); !touching.empty())
+      throw InputError("contacts",
+                       format("{} is closed in this motion, and what it holds follows from an "
+                              "equilibrium",
+                              touching.front()),
+                       "Use type: statics, or a state in which nothing touches");
   const ModalMatrices::Dense d = m.dense();
   return nb::make_tuple(matrix(d.M), matrix(d.C), matrix(d.K), matrix(d.Gt.transpose()));
 }
 
 }  // namespace
 
+/// Contacts and stops that touch, of rows that only push.
+std::vector<std::string> touching(Engine& engine) {
+  const Engine::Use simulation = engine.use();
+  ModalMatrices m(simulation->system(), simulation->state(), {});
+  const StaticRows* rows = m.statics().rows();
+  return rows ? rows->touching() : std::vector<std::string>();
+}
+
 void bind_modes(nb::module_& m) {
+  m.def("touching", &touching, nb::arg("engine"));
   m.def("modes", &modes, nb::arg("model"), nb::arg("count").none(), nb::arg("about").none());
   m.def("spin_modes", &spin_modes, nb::arg("model"), nb::arg("count").none(),
         nb::arg("about").none(), nb::arg("spin"), nb::arg("axis"), nb::arg("through"),

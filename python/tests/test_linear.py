@@ -162,3 +162,26 @@ def test_modes_about_a_spin_of_a_free_body_have_eulers_nutation(spin: float) -> 
     (modes,) = polhode.spin_modes(m, spin, axis="z")
     nutation = spin * np.sqrt((4 - 2) * (4 - 3) / (2 * 3)) / (2 * np.pi)  # of Ω along the axis of C, in the body
     assert min(abs(mode.frequency - nutation) for mode in modes) < 1e-7 * spin
+
+
+def on_its_stop(angle: str, **analysis: object) -> polhode.Model:
+    """A pendulum with another one below it, held up by a stop or free of it."""
+    m = polhode.Model(gravity=[0, 0, -G], contacts={"default": {"law": "rigid"}}, analysis=analysis)
+    m.add_body("upper", mass=2, inertia=[0.01] * 3, position=[-0.3, 0, 2])
+    m.add_body("lower", mass=1, inertia=[0.02] * 3, position=[-0.3, 0, 1.5])
+    m.add_joint("hinge", "revolute", ["ground", "upper"], at=[0, 0, 2.5], axis="y", limits={"lower": angle})
+    m.add_joint("knee", "revolute", ["upper", "lower"], at=[-0.3, 0, 2], axis="y")
+    return m
+
+
+def test_stops_that_hold_are_named_in_modes_and_refused_in_linearisations() -> None:
+    found = polhode.modes(on_its_stop("0 deg"))
+    assert found.held == ["the stop of revolute 'hinge'"]
+    # The lower one swings alone: J + m l^2 about the knee.
+    assert found[0].frequency == pytest.approx(np.sqrt(G * 0.5 / (0.02 + 0.25)) / (2 * np.pi), rel=1e-9)
+    moving = {"type": "dynamics", "duration": 1, "step": 0.001}
+    with pytest.raises(ValueError, match="the stop of revolute 'hinge' is closed here"):
+        polhode.linearize(on_its_stop("0 deg", **moving))
+    with pytest.raises(polhode.ModelError, match="closed in this motion"):
+        polhode.matrices(on_its_stop("0 deg", **moving))
+    assert len(polhode.linearize(on_its_stop("-10 deg", **moving)).states) == 4

@@ -84,6 +84,7 @@ std::string modes_json(const ModalAnalysis& analysis, int code, const std::strin
                                        {"symmetric", r.symmetric},
                                        {"complete", complete},
                                        {"unbalanced", r.unbalanced},
+                                       {"held", r.held},
                                        {"wall_time_s", analysis.wall_time()},
                                        {"cpu_time_s", analysis.cpu_time()},
                                        {"warnings", r.warnings},
@@ -131,6 +132,11 @@ std::string modes_table(const ModesReport& r) {
   return text;
 }
 
+/// Contacts and stops that hold like joints in these modes.
+void say_held(const ModalAnalysis& analysis) {
+  for (const std::string& row : analysis.report().held) say("held like a joint: " + row);
+}
+
 std::string spin_json(const std::vector<ModalAnalysis>& analyses, int code,
                       const std::string& folder) {
   nlohmann::ordered_json speeds = nlohmann::ordered_json::array();
@@ -140,6 +146,7 @@ std::string spin_json(const std::vector<ModalAnalysis>& analyses, int code,
     speeds.push_back({{"spin", analysis.spin()},
                       {"message", analysis.message()},
                       {"modes", list},
+                      {"held", analysis.report().held},
                       {"warnings", analysis.report().warnings}});
   }
   return nlohmann::ordered_json{{"exit_code", code}, {"speeds", speeds}, {"results", folder}}.dump(
@@ -177,6 +184,7 @@ int run_spin(const Model& model, const ModelArguments& arguments, const std::str
   std::vector<ModalAnalysis> analyses = spin_analyses(model, &stop_wanted);
   const int code = code_of(analyses.back());  // The first that fails is the last.
   for (const ModalAnalysis& analysis : analyses) {
+    if (!quiet) say_held(analysis);
     for (const std::string& warning : analysis.report().warnings)
       say(format("warning: at {:g} rad/s: {}", analysis.spin(), warning));
     if (!analysis.converged())
@@ -209,6 +217,7 @@ int run_modes(Model model, const ModelArguments& arguments, std::string folder, 
   else
     say(analysis.message());
   for (const std::string& warning : analysis.report().warnings) say("warning: " + warning);
+  if (!quiet) say_held(analysis);
   if (json)
     print(modes_json(analysis, code, folder) + "\n");
   else if (!quiet && analysis.converged())

@@ -56,7 +56,7 @@ JointLimits limits_of(const JointLimitsSpec& spec, const Model& model, double lo
   if (spec.lower) limits.lower = *spec.lower;
   if (spec.upper) limits.upper = *spec.upper;
   limits.restitution = spec.restitution;
-  limits.by_rows = model.contacts.rigid() && analysis.type == "dynamics";
+  limits.by_rows = model.contacts.rigid();
   limits.radius = radius;
   const double band = spec.band.value_or(kBand * length);
   const double by_step =

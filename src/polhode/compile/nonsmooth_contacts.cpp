@@ -58,7 +58,6 @@ void check_rigid(const Model& model, std::vector<InputError>& faults) {
     refuse("contacts.default.law", "rigid is not available with deformable solids and cables yet",
            "Use law: barrier in this model");
   const AnalysisSpec& a = model.analysis;
-  if (a.type != "dynamics") return;
   for (const JointSpec& joint : model.joints)
     for (const auto& [key, limits] :
          {std::pair("limits", joint.limits), std::pair("angle_limits", joint.angle_limits)}) {
@@ -67,6 +66,7 @@ void check_rigid(const Model& model, std::vector<InputError>& faults) {
              "cannot be combined with the law rigid, with which stops do not give way",
              "Leave it out, or use law: barrier");
     }
+  if (a.type != "dynamics") return;
   if (a.rho_inf != 1.0)
     refuse("analysis.rho_inf",
            format("is {:g}, but the law rigid uses the midpoint rule", a.rho_inf),

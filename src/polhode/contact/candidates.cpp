@@ -182,7 +182,8 @@ void ContactSet::find_candidates(double dt) {
 bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const Vec6> increments) {
   bool leaves = false;
-  const double part = sensible_part(increments);
+  // The search of statics bounds its increments itself.
+  const double part = acts_by_rows() && !context.conserving ? 1.0 : sensible_part(increments);
   const auto ahead = [&](int body) {
     return part * (increments[body].head<3>().norm() +
                    increments[body].tail<3>().norm() * reach_of_body_[body]);

@@ -155,6 +155,10 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
                                                       const ImpulsePoint& point) const override;
   [[nodiscard]] std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const override;
+  void points_at(std::span<const BodyStep> instants,
+                 std::vector<ContactInstant>& list) const override;
+  [[nodiscard]] double part_on_one_side(std::span<const BodyStep> instants,
+                                        std::span<const Vec6> increments) const override;
   Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const ImpulsePoint> list, std::span<const ImpulseLoss> losses,
                        const ImpulseSearch& search) override;
@@ -272,6 +276,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
                                                              const BothPlaced& at) const;
   [[nodiscard]] std::optional<double> gap_at_end_of(const ImpulsePoint& at,
                                                     std::span<const BodyStep> steps) const;
+  void add_places_at(int point, const BodyStep& a, const BodyStep& b, ContactInstant made,
+                     std::vector<ContactInstant>& list) const;
   void find_places(int point, std::span<const BodyStep> steps, double dt, bool again,
                    std::vector<ImpulsePoint>& list);
   [[nodiscard]] bool must_act(const ImpulsePoint& at, const BodyStep& a, const BodyStep& b,

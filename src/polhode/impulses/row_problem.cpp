@@ -62,13 +62,17 @@ class Search {
       const double d = mobility(block);
       if (d > kHeld * most) d_.segment(block.first, block.size).setConstant(d);
     }
+    weight_ = d_;
+    if (problem.even)
+      for (double& w : weight_)
+        if (w > 0.0) w = most;
   }
 
   RowReport run(Vec& p, const Vec* guess) {
     bool found = start_.size() == 0;
     if (guess && !found) {
       p_ = *guess;
-      found = newton(start_, kProximalOfGuess, true);
+      found = newton(start_, problem_.even ? kProximalParts.front() : kProximalOfGuess, true);
     }
     for (const double part : kProximalParts) {
       if (found) break;
@@ -81,7 +85,7 @@ class Search {
       found = sweep(kSweeps << round) || newton(best_, kProximalParts.back());
     }
     p = best_;
-    report_.converged = found;
+    report_.converged = found || least_ <= 1.0;
     return report_;
   }
 
@@ -187,10 +191,10 @@ class Search {
   bool newton(const Vec& centre, double part, bool guessed = false) {
     Vec middle = centre, y, F;
     Rows D = A_, J;
-    D.diagonal() += part * d_;
+    D.diagonal() += part * weight_;
     const auto merit = [&](Rows* derivative) {
       y.noalias() = D * p_;
-      y += problem_.b - part * d_.cwiseProduct(middle);
+      y += problem_.b - part * weight_.cwiseProduct(middle);
       evaluate(y, D, F, derivative);
       const double error =
           F.cwiseProduct(d_).cwiseProduct(problem_.lengths).lpNorm<Eigen::Infinity>();
@@ -203,13 +207,15 @@ class Search {
       const double now = merit(&J);
       if (!std::isfinite(now)) return false;
       const bool begins = guessed && it == 0;
-      if (!begins && accept()) return true;
-      if (!begins && excess(F) <= 1.0) {  // solved, with the proximal terms
+      const bool solved_here = !begins && accept(), near_centre = !begins && excess(F) <= 1.0;
+      if (solved_here && near_centre) best_ = p_;
+      if (solved_here && (near_centre || !problem_.even)) return true;
+      if (near_centre) {  // solved, with the proximal terms
         middle = p_;
         // A smaller part also multiplies rounding where rows share a load.
         if (least_ > kLessProximal * left) {
           if (part < kLeastProximal) return false;
-          D.diagonal() -= (1.0 - kLessProximal) * part * d_;
+          D.diagonal() -= (1.0 - kLessProximal) * part * weight_;
           part *= kLessProximal;
         }
         left = least_;
@@ -300,6 +306,7 @@ class Search {
   const Rows A_, sizes_;  ///< A of the problem, and its entries' magnitudes.
   Vec start_, best_, p_;
   double tolerance_, least_ = kEndless;
+  Vec weight_;   ///< Of the change of each impulse in proximal iterations, over ε.
   Vec d_;        ///< Mobility of each row, that of its block; 0: no impulse moves it.
   Vec pressed_;  ///< Normal impulses, projected.
   Vec y_exact_, F_exact_;

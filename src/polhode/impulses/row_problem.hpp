@@ -53,6 +53,9 @@ struct RowProblem {
   /// Lengths that turn angular velocities into velocities; 1 of other rows.
   Vec lengths;
   std::vector<ImpulseRows> blocks;  ///< Each row in one of them.
+  /// The nearest solution is that by the sum of squares of impulses; otherwise these are weighted
+  /// by the mobilities d.
+  bool even = false;
 
   /// Improves impulses until the error of every row is below the tolerance and the rounding of its
   /// velocity, 64 ε (Σ|A_ij p_j| + |b_i|). Otherwise the best impulses found are left, and the

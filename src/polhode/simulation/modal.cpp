@@ -4,6 +4,7 @@
 #include <polhode/core/clock.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/engines/unilateral_rows.hpp>
 #include <polhode/simulation/modal.hpp>
 #include <polhode/statics/turning_model.hpp>
 
@@ -150,6 +151,11 @@ ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
   (void)build_system(simulation_->model(), &map_);
   State state = simulation_->state();
   if (options.frame) check_turning(simulation_->system(), state, *options.frame);
+  if (analysis.about == "start" && UnilateralRows::of(simulation_->system()))
+    throw InputError("analysis.about",
+                     "is start, but forces of contacts and stops with the law rigid follow from an "
+                     "equilibrium",
+                     "Use about: equilibrium");
   if (analysis.about == "start") {
     // Multipliers that balance the loads with the model at rest.
     const InstantSolution now = InstantSolver(simulation_->system()).accelerations(state);
@@ -169,6 +175,12 @@ ModalAnalysis::ModalAnalysis(Model model, const std::atomic<bool>* stop) {
     } catch (const ModesStopped&) {
       message_ = stopped;
     }
+    if (!report_.held.empty() && report_.unbalanced > kUnbalanced)
+      message_ = format(
+          "The forces of contacts and stops at the equilibrium are not known: {:.2g} of the "
+          "largest force is unbalanced. Use law: barrier and about: start, or joints instead of "
+          "contacts",
+          report_.unbalanced);
     if (analysis.about == "start" && report_.unbalanced > kUnbalanced)
       report_.warnings.push_back(format(
           "the start is no equilibrium: {:.2g} of the largest force is unbalanced; use about: "

@@ -17,6 +17,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/engines/unilateral_rows.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/model/endless.hpp>
 #include <polhode/simulation/controllers.hpp>
@@ -43,6 +44,10 @@ inline constexpr int kSmallSystem = 2000;
 inline constexpr int kMaxBreaks = 10000;
 /// Largest displacements of a body by the initial assembly: with a given position, and without.
 inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
+
+/// Largest number of iterations of a load step with unilateral rows, whose increments are limited
+/// so that no two bodies pass each other.
+inline constexpr int kIterationsWithRows = 200;
 
 /// Strain below which it is rounding: the solid counts as unstressed.
 inline constexpr double kRoundedStrain = 1e-10;
@@ -147,15 +152,17 @@ struct Simulation::Impl {
         throw InputError(format("bodies.{}", body.name),
                          "has a velocity, which statics and modes do not support",
                          "Leave velocity and angular_velocity out, or use type: dynamics");
-    if (map.contacts)
+    if (map.contacts && !model.contacts.rigid())
       throw InputError("contacts",
-                       "bodies may touch bodies, which statics and modes do not support",
-                       "Exclude these pairs (only surfaces of solids and cables may touch), or use "
-                       "type: dynamics");
+                       "bodies may touch bodies, which statics and modes support with the law "
+                       "rigid only",
+                       "Give contacts.default law: rigid, exclude these pairs (surfaces of solids "
+                       "and cables may touch), or use type: dynamics");
     StaticOptions options;
     options.load_steps = model.analysis.load_steps.value_or(0);
     options.history = model.analysis.history.value_or(0.0);
-    options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
+    options.max_iterations = model.analysis.max_iterations.value_or(
+        UnilateralRows::of(system) ? kIterationsWithRows : options.max_iterations);
     statics = std::make_unique<LoadStepper>(system, options);
     narration.clear();  // it describes steps in time
   }

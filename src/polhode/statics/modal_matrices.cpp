@@ -58,6 +58,8 @@ ModalMatrices::ModalMatrices(const System& system, const State& state, const Mod
       damping_(system, newton_.bodies().topology()),
       shifted_(system, newton_.bodies().topology()) {
   newton_.assemble_at(state, options.load_factor);
+  if (newton_.rows())  // those that act are rows of the matrices
+    mass_ = damping_ = shifted_ = SaddleMatrix(system, newton_.topology());
   put_masses(state);
   put_damping(state, options);
   put_springs_for_compliant_rows();
@@ -83,7 +85,7 @@ linear::KktValues ModalMatrices::nothing() const {
   none.G_a.setZero();
   none.G_b.setZero();
   none.C.setZero();
-  values.pairs.assign(newton_.bodies().topology().pairs.size(), none);
+  values.pairs.assign(newton_.topology().pairs.size(), none);
   values.diagonal.assign(static_cast<std::size_t>(system_.body_count()), Mat6::Zero());
   return values;
 }
@@ -367,8 +369,7 @@ bool ModalMatrices::factor_quadratic(double sigma) {
 }
 
 bool ModalMatrices::is_spring(int row) const {
-  return newton_.bodies().is_spring(row) &&
-         !std::binary_search(integrals_.begin(), integrals_.end(), row);
+  return newton_.is_spring(row) && !std::binary_search(integrals_.begin(), integrals_.end(), row);
 }
 
 /// All unknowns and multipliers from n() or unknowns() entries.
@@ -453,7 +454,7 @@ ModalMatrices::Dense ModalMatrices::dense() {
   d.Gt.resize(unknowns(), 0);
   for (int r = 0; r < rows(); ++r) {
     // springs are in K, integrals are unknowns
-    if (newton_.bodies().is_spring(r)) continue;
+    if (newton_.is_spring(r)) continue;
     d.Gt.conservativeResize(unknowns(), d.Gt.cols() + 1);
     d.Gt.rightCols<1>() = Gt.col(r).normalized();
   }

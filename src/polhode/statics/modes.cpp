@@ -314,6 +314,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   m.statics().measure(balance_of_forces);
   report.unbalanced =
       balance_of_forces.force > 0.0 ? balance_of_forces.residual / balance_of_forces.force : 0.0;
+  if (const StaticRows* rows = m.statics().rows()) report.held = rows->held();
   report.asymmetry = m.asymmetry();
   report.symmetric = !m.damped() && report.asymmetry <= kSymmetricPencil;
   std::vector<FollowerLoad> followers;

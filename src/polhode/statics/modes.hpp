@@ -86,6 +86,9 @@ struct ModesReport {
   /// Largest unbalanced force of the state, relative to the largest force [-].
   double unbalanced = 0.0;
   double asymmetry = 0.0;  ///< Of the stiffness [-].
+  /// Contacts and stops with a force that are rows: "the contact of body 'a' and the ground:
+  /// 4 points, held along the normal and by friction". They hold like joints.
+  std::vector<std::string> held;
   std::vector<std::string> warnings;
 };
 

@@ -6,6 +6,7 @@
 #include <polhode/beams/running_cable.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/dynamics/load_step.hpp>
+#include <polhode/engines/unilateral_rows.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/equations/line_search.hpp>
 #include <polhode/equations/node_motion.hpp>
@@ -40,6 +41,7 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
       nodes_(system),
       matrix_(system, newton_.topology()) {
   newton_.set_static(true);
+  if (UnilateralRows::of(system)) rows_ = std::make_unique<StaticRows>(system);
   const Nodes& nodes = system.nodes();
   mixed_ = options.mixed_point;
   nodes_.set_static(true, mixed_);
@@ -129,17 +131,17 @@ ElementReport StaticNewton::assemble() {
   }
   std::swap(last_.history, work_.history);
   newton_.assemble(last_, trial_, true);
+  if (rows_) rows_->place(last_, trial_);
   std::swap(last_.history, work_.history);
-  const double s = scale();
-  matrix_.place(trial_);
-  matrix_.set(newton_.values(), nodes_.tangent(), nodes_.residual().data(), s);
-  matrix_.hold_point_masses(system_->length_scale() * system_->length_scale());
+  set_matrix();
 
+  const double s = scale();
   const int bodies = 6 * system_->body_count(), n = matrix_.movable();
   rhs_.setZero();
   matrix_.gather(nodes_.residual(), -s, rhs_);
   rhs_.head(bodies) += newton_.right_hand_side().head(bodies);
-  rhs_.tail(system_->rows()) = -newton_.right_hand_side().tail(system_->rows());
+  rhs_.segment(n, system_->rows()) = -newton_.right_hand_side().tail(system_->rows());
+  if (rows_) rows_->add_forces(s, rhs_, contact_noise_);
   for (int b = 0; b < system_->body_count(); ++b) moments_[b] = -rhs_.segment<6>(6 * b);
 
   // Rounding by products of stiffness and position, row by row; and the largest force.
@@ -149,9 +151,11 @@ ElementReport StaticNewton::assemble() {
     for (int c = 0; c < 3; ++c)
       if (const int u = matrix_.unknown(i, c); u >= 0) x_[u] = work_.node_x[3 * i + c];
   for (int row = 0; row < system_->rows(); ++row) x_[n + row] = s * work_.lambda[row];
+  x_.tail(matrix_rows() - system_->rows()).setZero();
   matrix_.magnitudes(x_, noise_);
   noise_ *= kFloor * kStaticRoundOff;
-  force_ = 0.0;
+  if (rows_) noise_.head(bodies) += contact_noise_;
+  force_ = rows_ ? rows_->largest_force() : 0.0;
   for (int b = 0; b < system_->body_count(); ++b) {
     const Vec6& f = newton_.body_residual_scale(b);
     force_ = std::max(
@@ -330,6 +334,7 @@ bool StaticNewton::search(double most, StaticStep& step, ElementReport& elements
 }
 
 StaticStep StaticNewton::solve(State& state, double load_factor, const State* start) {
+  if (rows_) return solve_with_rows(state, load_factor);
   StaticStep step;
   step.load_factor = load_factor;
   enter(load_factor, state.t);
@@ -465,7 +470,10 @@ void StaticNewton::assemble_at(const State& state, double load_factor) {
   enter(load_factor, load_factor);
   start_at(state);
   start_scratch(work_);
+  if (rows_) rows_->begin(state);
   choose_scale();
+  if (rows_) rows_->recall(state);
+  hold_ = true;
   assemble_unmixed();
   matrix_.make_hessian(moments_);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/statics/clarke_combination.hpp>
 #include <polhode/statics/static_report.hpp>
+#include <polhode/statics/static_rows.hpp>
 #include <polhode/system/barrier_constraint.hpp>
 
 namespace polhode {
@@ -74,6 +76,18 @@ class StaticNewton {
   [[nodiscard]] const std::vector<double>& node_residual() const { return held_; }
   /// Measures the last assembly: largest unbalanced force, and the largest force [N].
   void measure(StaticStep& step) const;
+  /// Unilateral rows; null: the system has none. @eq{statics-rows}
+  [[nodiscard]] const StaticRows* rows() const { return rows_.get(); }
+  /// Whether a contact with friction has closed in the last search that found an equilibrium.
+  [[nodiscard]] bool closes() const { return closes_; }
+  /// Topology of the matrix; rows that act are behind those of joints.
+  [[nodiscard]] const linear::KktTopology& topology() const {
+    return rows_ ? topology_ : newton_.topology();
+  }
+  /// Whether a row has a compliance, so that its multiplier is a spring force.
+  [[nodiscard]] bool is_spring(int row) const {
+    return row < system_->rows() && newton_.is_spring(row);
+  }
   /// Number of unstable directions at an equilibrium with stiffnesses added to the tangent of the
   /// nodes, in blocks of their graph [N/m]; −1: not known.
   [[nodiscard]] int unstable_with(const State& state, double load_factor,
@@ -85,6 +99,11 @@ class StaticNewton {
   /// Unbalanced, within the tolerance, or balanced to rounding.
   enum class Balance { off, within, rounded };
   [[nodiscard]] bool stopped() const { return options_.stop && options_.stop->load(); }
+  StaticStep solve_with_rows(State& state, double load_factor);
+  [[nodiscard]] bool row_increment(double ease);
+  [[nodiscard]] std::string endless();
+  [[nodiscard]] int matrix_rows() const { return matrix_.size() - matrix_.movable(); }
+  void set_matrix();
   void enter(double load_factor, double last);
   void start_at(const State& state);
   void place_bodies();
@@ -139,15 +158,21 @@ class StaticNewton {
     std::size_t first_history;
   };
   std::vector<Meeting> meetings_;
-  std::vector<int> shapes_;       ///< Element groups of contacts with rigid shapes.
-  std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
-  std::vector<Vec> free_;         ///< Orthonormal, see keep_free(); of the last factorisation.
-  ClarkeCombination kinks_;       ///< Residuals of iterates with small increments.
-  double force_ = 0.0;            ///< Largest force of the last assembly [N].
-  bool resisted_ = false;         ///< Ill-conditioned in this search, without free motions.
-  bool shifted_ = false;          ///< The last factorisation is of a shifted tangent.
-  std::vector<int> turns_;        ///< Interactions whose history counts turns.
-  std::vector<char> lengths_;     ///< By row: its value is a length, see assemble_gap().
+  std::vector<int> shapes_;           ///< Element groups of contacts with rigid shapes.
+  std::vector<double> x_before_;      ///< Of all nodes, at the last assembly of this search.
+  std::vector<Vec> free_;             ///< Orthonormal, see keep_free(); of the last factorisation.
+  ClarkeCombination kinks_;           ///< Residuals of iterates with small increments.
+  double force_ = 0.0;                ///< Largest force of the last assembly [N].
+  bool resisted_ = false;             ///< Ill-conditioned in this search, without free motions.
+  bool shifted_ = false;              ///< The last factorisation is of a shifted tangent.
+  std::unique_ptr<StaticRows> rows_;  ///< Null: there are none.
+  linear::KktTopology topology_;      ///< With rows_: of the matrix, and its values.
+  linear::KktValues values_;
+  Vec contact_noise_;          ///< Rounding of the rows' forces, by body; scaled.
+  bool closes_ = false;        ///< See closes().
+  bool hold_ = false;          ///< Rows that act are in the matrix.
+  std::vector<int> turns_;     ///< Interactions whose history counts turns.
+  std::vector<char> lengths_;  ///< By row: its value is a length, see assemble_gap().
 };
 
 }  // namespace polhode

@@ -167,13 +167,15 @@ void StaticNewton::count_unstable(StaticStep& step) {
     return;
   }
   start_scratch(work_);
+  hold_ = true;
   assemble_unmixed();
-  const bool symmetric = make_symmetric();
+  // Where round bodies roll the stiffness is not symmetric: then the count is that of its part.
+  const bool symmetric = make_symmetric() || rows_;
   const bool factored = solver_.factor(matrix_, symmetric);
   if (!factored || nearly_singular()) {
     if (!name_free_motions(step).empty() || !factored) return;
   }
-  if (symmetric) step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
+  if (symmetric) step.unstable = std::max(0, solver_.negative_pivots() - matrix_rows());
 }
 
 int StaticNewton::unstable_with(const State& state, double load_factor,
@@ -181,10 +183,10 @@ int StaticNewton::unstable_with(const State& state, double load_factor,
   assemble_at(state, load_factor);
   std::vector<double> blocks = nodes_.tangent();
   for (std::size_t k = 0; k < more.size(); ++k) blocks[k] += more[k];
-  matrix_.set(newton_.values(), blocks, nodes_.residual().data(), scale());
+  matrix_.set(rows_ ? values_ : newton_.values(), blocks, nodes_.residual().data(), scale());
   matrix_.hold_point_masses(system_->length_scale() * system_->length_scale());
   if (!make_symmetric() || !solver_.factor(matrix_, true)) return -1;
-  return std::max(0, solver_.negative_pivots() - system_->rows());
+  return std::max(0, solver_.negative_pivots() - matrix_rows());
 }
 
 /// Softest motion, by inverse iterations with the factors of count_unstable().

@@ -10,6 +10,7 @@
 #include <polhode/math/quaternion.hpp>
 #include <polhode/newton/rank_report.hpp>
 #include <polhode/statics/static_branches.hpp>
+#include <polhode/statics/static_row_steps.hpp>
 #include <polhode/statics/statics.hpp>
 #include <polhode/stepping/start.hpp>
 #include <polhode/system/time_breaks.hpp>
@@ -60,6 +61,7 @@ struct LoadStepper::Impl {
   double increment = 1.0;
   int equilibria = 0, unstable = -1;
   bool relaxed = false, no_start = false;
+  std::string jumps;  ///< Reason why nothing is sought beyond the last equilibrium; empty: none.
   std::optional<TimeBreaks> breaks;  ///< Of a history.
 
   Impl(const System& s, const StaticOptions& o) : system(&s), options(o), newton(s, o) {
@@ -69,6 +71,9 @@ struct LoadStepper::Impl {
   }
 
   [[nodiscard]] bool follows() const { return options.history > 0.0; }
+  /// Whether there are unilateral rows: then an equilibrium has no branch to follow, as it leaves
+  /// one wherever a row closes or opens.
+  [[nodiscard]] bool unilateral() const { return newton.rows() != nullptr; }
   [[nodiscard]] double end() const { return follows() ? options.history : 1.0; }
   /// Largest increment, and the first one.
   [[nodiscard]] double longest() const {
@@ -187,7 +192,7 @@ struct LoadStepper::Impl {
 
   void accept(State old, double from, State& state, StaticStep& step, double expected) {
     bool known = equilibria > 0;
-    if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
+    if (!known && !unilateral() && (step.unstable > 0 || suspicious(old, state, step, expected))) {
       State unloaded = old;
       const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
       known = none.converged;
@@ -196,7 +201,7 @@ struct LoadStepper::Impl {
         old = unloaded;
       }
     }
-    if (known) look_between(old, from, state, step, expected);
+    if (known && !unilateral()) look_between(old, from, state, step, expected);
     report.slack = slack_cables(state);
     if (step.unstable >= 0) unstable = step.unstable;
     before = std::move(old);
@@ -213,7 +218,7 @@ struct LoadStepper::Impl {
   /// equilibrium whatever the load, or has no stiffness, as a toggle at its dead centre. There is
   /// no branch yet that would be left.
   bool goes_down(State& state, double factor) {
-    if (equilibria > 0 || relaxed) return false;
+    if (equilibria > 0 || relaxed || unilateral()) return false;
     const State old = state;
     StaticStep step = newton.relax(state, factor, false);
     take(step);
@@ -224,12 +229,42 @@ struct LoadStepper::Impl {
     return true;
   }
 
+  /// Shortens a load step to where a contact closes, or to where bodies jump, beyond which nothing
+  /// is sought. @returns whether it ends in an equilibrium.
+  void check_rows(const State& old, State& state, StaticStep& step) {
+    if (newton.closes())
+      report.iterations += end_where_it_closes(*system, newton, old, size(old.t), state, step);
+    int iterations = 0;
+    const std::optional<FrictionJump> jump =
+        find_friction_jump(*system, newton, old, state, step, iterations);
+    report.iterations += iterations;
+    if (iterations == 0) return;
+    // Reports of contacts are those of the last search.
+    const double end = jump ? jump->load_factor : step.load_factor;
+    if (jump) jumps = jump->reason;
+    state = old;
+    if (end > old.t) step = newton.solve(state, end);
+    if (end <= old.t || (jump && !step.converged)) {
+      step.converged = false;
+      step.reason = jumps;
+      step.worst.clear();
+      step.force = 0.0;
+    }
+  }
+
   bool advance(State& state, double limit) {
     const double from = state.t, first = increment;
+    if (!jumps.empty()) {
+      StaticStep end;
+      end.reason = jumps;
+      explain(end, {}, state, from);
+      return false;
+    }
     for (;;) {
       const double factor = next_factor(from, limit);
       StaticStep step;
-      const bool predict = equilibria > 1 && from - factor_before > kSame * size(from);
+      const bool predict =
+          !unilateral() && equilibria > 1 && from - factor_before > kSame * size(from);
       State old = state;
       double expected = 0.0;
       if (predict) {
@@ -248,12 +283,17 @@ struct LoadStepper::Impl {
         }
         if (!step.increments.empty()) expected = std::max(expected, step.increments.front());
       }
+      if (step.converged && unilateral()) check_rows(old, state, step);
       take(step);
       if (step.converged) {
         accept(std::move(old), from, state, step, expected);
         return true;
       }
       if (stopped()) return false;
+      if (!jumps.empty()) {
+        explain(step, {}, state, factor);
+        return false;
+      }
       increment = kCut * (factor - from);
       if (increment >= kMinIncrement * size(from)) continue;
       increment = first;
@@ -264,7 +304,7 @@ struct LoadStepper::Impl {
           newton.assemble_at(state, from);
           soft = newton.softest().text;
         }
-        if (equilibria > 1 && from - factor_before > kSame)
+        if (!unilateral() && equilibria > 1 && from - factor_before > kSame)
           if (std::optional<LimitPoint> end =
                   extrapolate_limit(*system, options, {before, state, factor_before, from}))
             report.limit_points.push_back(std::move(*end));
@@ -328,6 +368,9 @@ struct LoadStepper::Impl {
       s += " Cables are slack: shorten their free_length, load them, or follow the motion with "
            "type: "
            "dynamics and damping.";
+    } else if (unilateral()) {
+      s += " Hold it by a joint, a spring or more friction, or follow the motion with type: "
+           "dynamics.";
     } else if (equilibria > 0) {
       s += " It may be a limit point, where the model buckles";
       if (!soft.empty()) s += format("; the stiffness is smallest where {}", soft);
@@ -357,6 +400,7 @@ void LoadStepper::begin(State& state) {
   s.equilibria = 0;
   s.unstable = -1;
   s.relaxed = s.no_start = false;
+  s.jumps.clear();
   if (!s.follows()) return;
   while (state.t < 0.0 && s.advance(state, 0.0)) {
   }
@@ -373,6 +417,7 @@ void LoadStepper::switched(State& state) {
   stop_moving(*s.system, state);
   s.equilibria = 0;  // another branch, which may be far
   s.relaxed = false;
+  s.jumps.clear();
 }
 
 bool LoadStepper::advance(State& state, double limit) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
@@ -45,6 +47,25 @@ struct ImpulsePoint {
   int number = 0;                            ///< Number among the contacts.
 };
 
+/// A contact point at an instant, with what an equilibrium needs of it: the derivatives of its
+/// normal and place by the increments (Δr_a, Δθ_a, Δr_b, Δθ_b), and its history.
+struct ContactInstant {
+  using ByIncrements = Eigen::Matrix<double, 3, 12>;
+  int a = kGround, b = kGround;
+  int number = 0;                                     ///< Among the contacts, at this instant only.
+  std::array<std::uint64_t, 2> key{};                 ///< Of its two features, for all instants.
+  double gap = 0.0;                                   ///< [m]
+  Vec3 normal = Vec3::UnitZ(), place = Vec3::Zero();  ///< From b to a, unit; [m].
+  ByIncrements normal_by = ByIncrements::Zero(), place_by = ByIncrements::Zero();
+  double friction = 0.0, friction_across = 0.0;         ///< Kinetic [-].
+  double static_friction = 0.0;                         ///< Not below the kinetic one [-].
+  Vec3 along = Vec3::UnitX();                           ///< Direction of `friction`, world.
+  double rolling = 0.0, torsion = 0.0;                  ///< [m]
+  double size = 1.0;                                    ///< As ImpulsePoint::size [m].
+  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();  ///< Of the last step, as in its history.
+  bool slips = false;                                   ///< At the end of it.
+};
+
 /// Energy loss of the bodies by an impulse [J].
 struct ImpulseLoss {
   double normal = 0.0, friction = 0.0;
@@ -86,6 +107,14 @@ class ImpulsiveContacts {
   /// body in a fast step.
   [[nodiscard]] virtual std::optional<std::pair<int, int>> passed(
       std::span<const BodyStep> steps) const = 0;
+  /// Appends all candidates for contact points where bodies are, after begin_step() there.
+  virtual void points_at(std::span<const BodyStep> instants,
+                         std::vector<ContactInstant>& list) const = 0;
+  /// Largest part of increments from these instants that takes no two bodies deeper into each other
+  /// than half of their smaller half thickness, so that their gaps still tell on which side they
+  /// are. Increments must be covered.
+  [[nodiscard]] virtual double part_on_one_side(std::span<const BodyStep> instants,
+                                                std::span<const Vec6> increments) const = 0;
   /// Commits an accepted step like BodyContacts::commit().
   virtual Work commit_impulses(State& state, std::span<const BodyStep> steps,
                                const StepContext& context, std::span<const ImpulsePoint> list,

@@ -179,10 +179,12 @@ void check_model(ReadContext& context, const SourceNode& root) {
   const int order = model.analysis.order.value_or(2);
   const bool surfaces =
       model.analysis.type == "statics" && (!model.solids.empty() || has_touching_cables(model));
-  if (model.contacts.present && model.analysis.type != "dynamics" && !surfaces)
+  if (model.contacts.present && model.analysis.type != "dynamics" && !surfaces &&
+      !model.contacts.rigid())
     context.fault(*root.find("contacts"), "contacts",
                   format("cannot be combined with an analysis of type {}", model.analysis.type),
-                  "Contact of bodies needs type: dynamics: let the model come to rest there.");
+                  "Contact of bodies needs contacts.default law: rigid, or type: dynamics: let the "
+                  "model come to rest there.");
   if (model.analysis.method == "extrapolation") return;  // choose_order() checks it
   if (order > 2 && model.contacts.present)
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
