@@ -16,6 +16,9 @@ namespace {
 /// Rounding of positions and of velocities, relative to their size.
 constexpr double kGapRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kSpeedRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// Displacement, in sizes of the model, below which row problems are solved exactly. No step ends
+/// with an increment that is longer.
+constexpr double kExactBelow = 1e-6;
 /// Rows of all islands, and of one, for which the dense matrices of the row problem are not too
 /// large: 18 MB, and 0.05 s for each of its factorisations.
 constexpr std::size_t kMostRows = 1500, kMostRowsOfIsland = 600;
@@ -332,6 +335,7 @@ bool UnilateralRows::solve(const State& state, const Trial& trial, double scale,
     problem.A = A(island, island);
     problem.b = y(island);
     problem.given = impulses(island);
+    problem.exact_below = kExactBelow * system_->length_scale() / std::abs(dt_);
     take_blocks(island, problem);
     Vec of_island = Vec::Zero(problem.b.size());
     const Vec before = guess(island);

@@ -38,6 +38,8 @@ constexpr double kProximalOfGuess = 1e-6;
 /// Factor of that part after an iteration that leaves more than this of the error, and the part at
 /// which they end: below the rounding of velocities.
 constexpr double kLessProximal = 0.1, kLeastProximal = 1e-14;
+/// Part of the error of the initial impulses that may be left, see RowProblem::exact_below.
+constexpr double kLooseness = 1e-3;
 /// Sweeps between two searches by Newton's method, of which each round doubles the number.
 constexpr int kSweeps = 25;
 constexpr int kRounds = 6, kRoundsOfMany = 2;  ///< The latter beyond kMostDenseRows.
@@ -69,7 +71,9 @@ class Search {
   }
 
   RowReport run(Vec& p, const Vec* guess) {
-    bool found = start_.size() == 0;
+    bool found = start_.size() == 0 || (accept() && !problem_.even);
+    if (report_.error > problem_.exact_below)
+      tolerance_ = std::max(tolerance_, kLooseness * report_.error);
     if (guess && !found) {
       p_ = *guess;
       found = newton(start_, problem_.even ? kProximalParts.front() : kProximalOfGuess, true);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <polhode/core/types.hpp>
@@ -52,6 +53,9 @@ struct RowProblem {
   Vec given;  ///< Impulses that act already, contained in b [N s]; zero at first.
   /// Lengths that turn angular velocities into velocities; 1 of other rows.
   Vec lengths;
+  /// Error of the initial impulses above which a thousandth of it may be left [m/s]: where the
+  /// problem is the linearisation of one that is linearised again.
+  double exact_below = std::numeric_limits<double>::infinity();
   std::vector<ImpulseRows> blocks;  ///< Each row in one of them.
   /// The nearest solution is that by the sum of squares of impulses; otherwise these are weighted
   /// by the mobilities d.
