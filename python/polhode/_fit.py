@@ -24,6 +24,9 @@ _INSEPARABLE, _INSEPARABLE_BY_DIFFERENCES = 1e-9, 1e-6
 _INVOLVED = 1e-4
 #: Relative step of central differences.
 _DIFFERENCE = 1e-4
+#: Difference of the channels of a run and of its gradient, as a part of the residuals' size, above which it is
+#: reported: impacts are located in gradients only.
+_SAME_RUN = 1e-6
 #: Error of interpolation between frames, as a part of the residuals, above which it is reported.
 _COARSE = 0.1
 #: Part of the run within which two times are equal.
@@ -89,6 +92,7 @@ class _Misfit:
         self.model, self.experiments, self.names, self.scale = model, experiments, names, scale
         self.sizes, self.priors = sizes, priors
         self.runs = 0
+        self.apart = 0.0  # of the channels of runs and of their gradients, relative to their sizes
         self._at: Any = None
         self._results: "list[Result]" = []
 
@@ -148,10 +152,13 @@ class _Misfit:
             times = np.asarray(result.time)
             counts = [(name, _numbers(result, name)) for name, _ in _channels(e)]
             source = source_of(self.model, self._overrides(e, x))
-            _, by = tangents(source, [c for _, own in counts for c in own], times, self.names)
+            values, by = tangents(source, [c for _, own in counts for c in own], times, self.names)
             smooth = CubicSpline(times, by)(e.data["time"])
             first = 0
             for name, own in counts:
+                ran = series(result, name)[1].reshape(len(times), -1)
+                apart = np.abs(values[:, first:first + len(own)] - ran) / self.sizes[name]
+                self.apart = max(self.apart, float(np.max(apart)))
                 parts.append(smooth[:, first:first + len(own)].reshape(-1, len(self.names)) / self.sizes[name])
                 first += len(own)
             self.runs += len(self.names)
@@ -388,6 +395,10 @@ def fit(
     slopes = misfit.differences(best) if differences else misfit.jacobian(best)
     covariance, values, lost = _covariance(misfit, best, slopes, _INSEPARABLE_BY_DIFFERENCES if differences
                                            else _INSEPARABLE, bool(deviations))
+    if misfit.apart > _SAME_RUN:
+        warnings.warn("impacts and events end steps in the gradient, but not in the runs: their channels differ by "
+                      f"{misfit.apart:.1g} of their size, and the estimates are as inexact. Take shorter steps",
+                      stacklevel=2)
     if lost:
         warnings.warn(f"the data do not tell these parameters apart, or do not depend on them: {', '.join(lost)}. Fix "
                       "some of them, or give priors", stacklevel=2)

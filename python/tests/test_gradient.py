@@ -105,3 +105,19 @@ def test_fits_with_automatic_steps_find_what_the_data_were_made_with() -> None:
 def test_designs_with_automatic_steps_meet_their_target() -> None:
     best = polhode.minimize(swing(1e-8), {"bodies.cart.position.x@0.5": swung(0.5, 44)}, {"variables.k": 50})
     assert best.parameters["variables.k"] == pytest.approx(44, rel=1e-6)
+
+
+def test_fits_through_impacts_say_that_runs_do_not_locate_them() -> None:
+    m = polhode.Model(gravity=[0, 0, -9.81], variables={"e": 0.6},
+                      contacts={"default": {"law": "rigid", "restitution": "e"}},
+                      analysis={"duration": "0.7 s", "step": "5 ms"})
+    m.add_body("floor", fixed=True, shape={"plane": "z"})
+    m.add_body("ball", mass=1, shape={"sphere": 0.1}, position=[0, 0, 1.05])
+    t = np.linspace(0, 0.7, 50)
+    meets = math.sqrt(2 / 9.81)
+    back = np.maximum(t - meets, 0.0)
+    height = np.where(t < meets, 1.05 - 9.81 / 2 * t**2, 0.05 + 0.8 * 9.81 * meets * back - 9.81 / 2 * back**2)
+    data = {"time": t, "bodies.ball.position.z": height}
+    with pytest.warns(UserWarning, match="impacts and events end steps in the gradient"):
+        found = polhode.fit(m, data, {"variables.e": 0.6}, jacobian="exact")
+    assert found.parameters["variables.e"] == pytest.approx(0.8, abs=0.02)
