@@ -335,7 +335,8 @@ bool UnilateralRows::solve(const State& state, const Trial& trial, double scale,
     problem.A = A(island, island);
     problem.b = y(island);
     problem.given = impulses(island);
-    problem.exact_below = kExactBelow * system_->length_scale() / std::abs(dt_);
+    // From the second iteration on, errors are those of the linearisation.
+    if (!first_) problem.exact_below = kExactBelow * system_->length_scale() / std::abs(dt_);
     take_blocks(island, problem);
     Vec of_island = Vec::Zero(problem.b.size());
     const Vec before = guess(island);
