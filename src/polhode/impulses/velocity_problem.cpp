@@ -22,6 +22,8 @@ constexpr double kCarried = 1e-12;
 /// Accuracy of the work that restitution returns, and most secants and bisections for it.
 constexpr double kSameWork = 1e-13;
 constexpr int kMostSections = 60;
+/// Distance of a false position from both ends, as a part of their own.
+constexpr double kInside = 1e-3;
 /// Largest number of sub-steps of restitution, as a multiple of those of compression.
 constexpr int kMostReturns = 8;
 /// Rounding of velocities relative to the sum of their terms: that at which row problems end, for
@@ -287,19 +289,27 @@ void Course::restore(int parts) {
       take(next);
       continue;
     }
-    // The last sub-step is shortened.
-    double low = 0.0, high = 1.0;
+    // The last sub-step is shortened: its work is found by false positions, of which an end that
+    // stays counts half (the Illinois method).
+    const auto excess = [&](const Part& some) {
+      return std::max(some.normal_work - left, work_ + some.work - rounding);
+    };
+    double low = 0.0, high = 1.0, below = -left, above = excess(next);
     double share = parts == 1 && left < next.normal_work ? std::sqrt(left / next.normal_work)
                                                          : std::min(1.0, left / next.normal_work);
     Part last = next;
-    for (int k = 0; k < kMostSections; ++k) {
+    for (int k = 0, side = 0; k < kMostSections; ++k) {
       last = part(targets(share), 0.0);
-      const bool over = last.normal_work > left * (1.0 + kSameWork) || work_ + last.work > rounding;
-      if (!over && last.normal_work >= left * (1.0 - kSameWork)) break;
-      (over ? high : low) = share;
-      if (high - low <= kSameWork) break;
-      const double secant = last.normal_work > 0.0 ? share * left / last.normal_work : 0.0;
-      share = k == 0 && secant > low && secant < high ? secant : 0.5 * (low + high);
+      const double error = excess(last);
+      if (std::abs(error) <= kSameWork * left || high - low <= kSameWork) break;
+      const int now = error > 0.0 ? 1 : -1;
+      (now > 0 ? high : low) = share;
+      (now > 0 ? above : below) = error;
+      if (now == side) (now > 0 ? below : above) *= 0.5;
+      side = now;
+      const double width = high - low;
+      share = std::clamp(low - below * width / (above - below), low + kInside * width,
+                         high - kInside * width);
     }
     take(last);
     return;
