@@ -66,7 +66,7 @@ class Course {
     double work = 0.0;         ///< Of all rows [J].
     double normal_work = 0.0;  ///< Of normal rows alone.
   };
-  [[nodiscard]] Part part(const Vec& targets, double carried);
+  [[nodiscard]] Part part(const Vec& targets, double carried, const Vec& guess);
   void take(const Part& part) {
     w_ = part.w;
     impulses_ += part.p;
@@ -229,12 +229,14 @@ void Course::before_impact() {
 }
 
 /// A row problem from the present velocities. @param carried  Part of the carried impulses.
-Course::Part Course::part(const Vec& targets, double carried) {
+/// @param guess  Impulses of a similar part; empty: none.
+Course::Part Course::part(const Vec& targets, double carried, const Vec& guess) {
   const RowProblem problem = rows(w_ - targets, [&](std::size_t i, double used) {
     return carried * std::max(0.0, carried_[i] - used);
   });
   Part done{.w = {}, .p = Vec::Zero(w_.size())};
-  const RowReport report = problem.solve(done.p, problem_.rounding);
+  const RowReport report =
+      problem.solve(done.p, problem_.rounding, guess.size() > 0 ? &guess : nullptr);
   result_.report.iterations += report.iterations;
   result_.report.sweeps += report.sweeps;
   if (!report.converged && !(report.error <= result_.report.error)) {
@@ -252,16 +254,18 @@ Course::Part Course::part(const Vec& targets, double carried) {
 
 void Course::compress(int parts) {
   const std::vector<ContactRows>& contacts = problem_.contacts;
+  Vec before;  // impulses of the last part
   for (int j = 1; j <= parts; ++j) {
     Vec targets = Vec::Zero(w_.size());
     for (std::size_t i = 0; i < contacts.size(); ++i)
       targets[contacts[i].normal] = -approach_[i] * (1.0 - static_cast<double>(j) / parts);
-    const Part next = part(targets, 1.0 / parts);
+    Part next = part(targets, 1.0 / parts, before);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const Index k = contacts[i].normal;
       work_of_[i] -= 0.5 * next.p[k] * (w_[k] + next.w[k]);
     }
     take(next);
+    before = std::move(next.p);
   }
 }
 
@@ -281,12 +285,14 @@ void Course::restore(int parts) {
     return t;
   };
   const double rounding = kSameWork * std::abs(work_);
+  Vec before;  // impulses of the last part
   for (int j = 0; j < kMostReturns * parts && left > 0.0; ++j) {
-    const Part next = part(targets(1.0), 0.0);
+    const Part next = part(targets(1.0), 0.0, before);
     if (!(next.normal_work > 0.0)) return;
     if (next.normal_work < left * (1.0 - kSameWork) && work_ + next.work <= rounding) {
       left -= next.normal_work;
       take(next);
+      before = next.p;
       continue;
     }
     // The last sub-step is shortened: its work is found by false positions, of which an end that
@@ -299,7 +305,7 @@ void Course::restore(int parts) {
                                                          : std::min(1.0, left / next.normal_work);
     Part last = next;
     for (int k = 0, side = 0; k < kMostSections; ++k) {
-      last = part(targets(share), 0.0);
+      last = part(targets(share), 0.0, last.p);
       const double error = excess(last);
       if (std::abs(error) <= kSameWork * left || high - low <= kSameWork) break;
       const int now = error > 0.0 ? 1 : -1;
