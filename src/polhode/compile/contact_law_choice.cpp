@@ -10,8 +10,8 @@ namespace polhode {
 namespace {
 
 /// Number of bodies that move and touch, up to which rows cost no more than the barrier; and of
-/// those with edges. Two bodies whose edges meet flush have many rows, and rounded edges that are
-/// small beside their motion in a step: not all of their steps end.
+/// those with edges. Bodies that lie flat on each other have many rows, whose cost is their cube,
+/// and where roundings of parallel edges overlap, not all steps end.
 constexpr int kMostBodiesOfRows = 12, kMostWithEdges = 1;
 
 bool is_sampled(const ShapeSpec& shape) {
