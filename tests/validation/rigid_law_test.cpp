@@ -178,7 +178,8 @@ TEST(RigidLaw, ABarReboundsFromAnEdgeAcrossIt) {
                1.0 + rounded + drop),
         format(", friction: 0.3, restitution: {}", e), std::round(T / h) * h, h));
     const RunSummary r = closed(s);
-    EXPECT_NEAR(r.contact.least_gap, 0.0, 1e-10);
+    ASSERT_TRUE(r.contacts);
+    EXPECT_NEAR(r.contacts->least_gap, 0.0, 1e-10);
     const double height = s.body(2).r[2] - 1.0 - rounded, v = s.body(2).v[2];
     EXPECT_NEAR(height + 0.5 * v * v / g, e * e * drop, 0.3 * h * drop + 1e-9) << h;
     EXPECT_LT(s.body(2).W.norm(), 1e-9);
