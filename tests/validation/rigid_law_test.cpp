@@ -167,7 +167,7 @@ TEST(RigidLaw, ARestartContinuesWithTheSameBits) {
 TEST(RigidLaw, ABarReboundsFromAnEdgeAcrossIt) {
   const double g = 9.81, drop = 0.05, e = 0.5, top = 0.1 * std::sqrt(2.0);
   // Edges are rounded off by 1e-3 of half the thickness.
-  const double rounded = top - 4.0 * 0.05e-3 * (std::sqrt(2.0) - 1.0);
+  const double rounded = top - 2.0 * 0.05e-3 * (std::sqrt(2.0) - 1.0);
   for (const double h : {1e-2, 1e-3, 1e-4}) {
     const double T = std::sqrt(2.0 * drop / g) * (1.0 + e);  // at its highest again
     Simulation s = made(model(

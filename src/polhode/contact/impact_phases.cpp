@@ -205,7 +205,9 @@ PairImpact ContactSet::row_at(const Point& p, const State& state) const {
   if (impact.mu == impact.mu_across) along = slip;
   if (along.squaredNorm() < 1e-24 * std::max(1e-300, v.squaredNorm()))
     along = n.cross(std::abs(n.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
-  impact.along = along.normalized();
+  // Once more across the normal: a small slip is a difference of larger numbers.
+  along.normalize();
+  impact.along = (along - n.dot(along) * n).normalized();
   impact.across = n.cross(impact.along);
   return r;
 }

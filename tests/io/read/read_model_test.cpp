@@ -203,7 +203,8 @@ TEST(ReadModel, AppliesOverrides) {
           .z(),
       5.0, kRounding);
   EXPECT_EQ(read(text, {"gravity=[0, 0, -1]"}).gravity.z(), -1.0);
-  EXPECT_EQ(read(text, {"contacts.default.friction=0.3"}).contacts.standard.friction, 0.3);
+  const std::string ball = "bodies:\n  ball: {shape: {sphere: 1}, mass: 1}\ncontacts: {}\n";
+  EXPECT_EQ(read(ball, {"contacts.default.friction=0.3"}).contacts.standard.friction, 0.3);
 }
 
 TEST(ReadModel, LocatesAnInvalidOverride) {
