@@ -27,8 +27,8 @@ struct Crossing {
   bool in_front = false, behind = false;
 };
 
-/// None: the edges do not cross. Then they are no contact of their own, whatever their distance, as
-/// a corner is nearer to the other body. @eq{contact-edges}
+/// Crossing of the edges of a pair; none: they are no contact of their own, whatever their
+/// distance, as a corner is nearer to the other body. @eq{contact-edges}
 [[nodiscard]] std::optional<Crossing> crossing(const PointData& d, const BothPlaced& at);
 
 /// Whether two edges that cross at the end of a step have passed through each other in it: the side

@@ -151,7 +151,7 @@ class ImpactResolver {
   std::vector<double> pressed_nodes_;    ///< On free nodes, three each; empty: none.
   bool pulls_ = false;                   ///< Rows of tied bodies have been settled.
   double drive_work_ = 0.0;              ///< Of the last impacts [J].
-  double largest_jump_ = 0.0;            ///< Likewise [1/s].
+  double largest_jump_ = 0.0;            ///< In the last impacts [1/s].
   UnsolvedImpacts unsolved_;             ///< Of the last impacts.
   std::vector<int> numbers_;  ///< Rows of contacts, in the order of the contacts' list; −1: none.
 };
