@@ -176,11 +176,11 @@ def on_its_stop(angle: str, **analysis: object) -> polhode.Model:
 
 def test_stops_that_hold_are_named_in_modes_and_refused_in_linearisations() -> None:
     found = polhode.modes(on_its_stop("0 deg"))
-    assert found.held == ["the stop of revolute 'hinge'"]
+    assert found.held == ["the stop of joint 'hinge'"]
     # The lower one swings alone: J + m l^2 about the knee.
     assert found[0].frequency == pytest.approx(np.sqrt(G * 0.5 / (0.02 + 0.25)) / (2 * np.pi), rel=1e-9)
     moving = {"type": "dynamics", "duration": 1, "step": 0.001}
-    with pytest.raises(ValueError, match="the stop of revolute 'hinge' is closed here"):
+    with pytest.raises(ValueError, match="the stop of joint 'hinge' is closed here"):
         polhode.linearize(on_its_stop("0 deg", **moving))
     with pytest.raises(polhode.ModelError, match="closed in this motion"):
         polhode.matrices(on_its_stop("0 deg", **moving))
