@@ -39,7 +39,7 @@ double difference_from_located_runs(const FrozenCase& c, std::int64_t impacts) {
   return largest_difference(g, request.parameters, of_runs);
 }
 
-/// Of these differences, which are taken over a ten-thousandth at steps of a millisecond.
+/// Tolerance on these differences, which are taken over a ten-thousandth at steps of a millisecond.
 double bound(double h) { return h < 5e-3 ? 5e-8 : 1e-8; }
 
 FrozenCase with_step(FrozenCase c, double step) {

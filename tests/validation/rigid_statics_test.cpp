@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equilibria with contacts and stops that are rows (law: rigid) against closed forms, at any number
-// of load steps, and against the end of damped motions.
+// Equilibria with contacts and stops that are rows (law: rigid) against closed forms, in few and
+// many load steps, and against the end of damped motions.
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -31,8 +31,8 @@ struct Crossing {
 /// distance, as a corner is nearer to the other body. @eq{contact-edges}
 [[nodiscard]] std::optional<Crossing> crossing(const PointData& d, const BothPlaced& at);
 
-/// Whether two edges that cross at the end of a step have passed through each other in it: the side
-/// of each other on which they lie has changed. @eq{contact-edges}
+/// Whether two edges that cross at the end of a step have passed through each other in it, as each
+/// lies on the other side of the other one. @eq{contact-edges}
 [[nodiscard]] bool passed_through(const PointData& d, const BodyStep& a, const BodyStep& b);
 
 /// Whether two edges are a contact at the end of a step that was none at its start: they overlap,

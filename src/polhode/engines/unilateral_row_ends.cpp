@@ -33,11 +33,11 @@ std::string UnilateralRows::broken() const {
   const double accuracy = kOverlapGaps * touching_;
   for (const Stop& stop : stops_)
     if (stop.exists && stop.row.gap_n1 < -accuracy)
-      return format("{} would be passed", name_of(stop));
+      return format("{} would be passed", stop_name(*system_, stop.interaction));
   if (!contacts_) return {};
   if (const auto pair = impulsive_->passed(steps_))
     return format("{} would overlap or pass through each other",
-                  names_of(pair->first, pair->second));
+                  pair_name(*system_, pair->first, pair->second));
   double gained = 0.0, forces = 0.0, most = 0.0;
   const ImpulsePoint* worst = nullptr;
   for (const ImpulsePoint& p : points_) {
@@ -49,7 +49,7 @@ std::string UnilateralRows::broken() const {
     worst = &p;
   }
   if (!worst || gained <= accuracy * forces) return {};
-  return format("the contact of {} would gain energy", names_of(worst->a, worst->b));
+  return format("the contact of {} would gain energy", pair_name(*system_, worst->a, worst->b));
 }
 
 void UnilateralRows::add_ground_wrench(double* force, double* moment) const {

@@ -25,12 +25,7 @@ constexpr std::size_t kMostRows = 1500, kMostRowsOfIsland = 600;
 
 }  // namespace
 
-bool UnilateralRows::of(const System& system) {
-  if (!system.unilateral().empty()) return true;
-  if (!system.contacts()) return false;
-  const ImpulsiveContacts* c = system.contacts()->impulsive();
-  return c && c->impulses() && c->impulses()->rigid;
-}
+bool UnilateralRows::of(const System& system) { return has_unilateral_rows(system); }
 
 UnilateralRows::UnilateralRows(const System& system)
     : system_(&system), contacts_(system.contacts().get()), touching_(system.touching_gap()) {
@@ -38,19 +33,7 @@ UnilateralRows::UnilateralRows(const System& system)
     impulsive_ = contacts_->impulsive();
     contacts_->prepare(system);
   }
-  for (const int i : system.unilateral()) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
-    const InteractionTraits& traits = system.traits(ref);
-    for (int k = 0; k < traits.unilateral; ++k) {
-      Stop& stop = stops_.emplace_back();
-      stop.interaction = i;
-      stop.a = ref.a;
-      stop.b = ref.b;
-      stop.number = k;
-      stop.memory = ref.first_history + traits.unilateral_entry +
-                    k * static_cast<int>(kNumbersOf<UnilateralMemory>);
-    }
-  }
+  for (const UnilateralStop& stop : unilateral_stops(system)) stops_.push_back({stop});
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.assign(n + 1, BodyStep::ground(0.5));
   nowhere_.assign(n, Vec6::Zero());
@@ -219,22 +202,9 @@ double UnilateralRows::change(const Row& row, const Vec& x) {
   return sum;
 }
 
-std::string UnilateralRows::names_of(int a, int b) const {
-  const auto name = [&](int body) {
-    return body == kGround
-               ? std::string("the ground")
-               : format("body '{}'", system_->bodies()[static_cast<std::size_t>(body)].name);
-  };
-  return format("{} and {}", name(a), name(b));
-}
-
-std::string UnilateralRows::name_of(const Stop& stop) const {
-  const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(stop.interaction)];
-  return format("the stop of {} '{}'", system_->group(ref.group).kind(), system_->name(ref));
-}
-
 std::string UnilateralRows::name_of(const Row& row) const {
-  return is_point(row) ? "the contact of " + names_of(row.a, row.b) : name_of(stop_of(row));
+  return is_point(row) ? "the contact of " + pair_name(*system_, row.a, row.b)
+                       : stop_name(*system_, stop_of(row).interaction);
 }
 
 double UnilateralRows::impulse_of(const Row& row) const {

@@ -11,7 +11,7 @@
 #include <polhode/linear/kkt.hpp>
 #include <polhode/system/body_contacts.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
-#include <polhode/system/unilateral_row.hpp>
+#include <polhode/system/unilateral_stops.hpp>
 
 namespace polhode {
 
@@ -59,14 +59,8 @@ class UnilateralRows {
     bool turns = false;             ///< An angular impulse.
   };
   /// A unilateral row of an interaction in this step.
-  struct Stop {
-    int interaction = 0, a = kGround, b = kGround;
-    int memory = 0;       ///< Entry of its record in State::history.
-    int number = 0;       ///< Among the rows of its interaction.
-    bool exists = false;  ///< Not that of an interaction that is off.
-    bool listed = false;  ///< It is a row since an earlier iteration.
-    double impulse = 0.0;
-    UnilateralRow row;
+  struct Stop : UnilateralStop {
+    double impulse = 0.0;  ///< [N s]
   };
   void take_steps(const State& state, const Trial& trial);
   void take_stops(const State& state, const Trial& trial);
@@ -95,10 +89,8 @@ class UnilateralRows {
   }
   [[nodiscard]] Vec3 slip_of(const ImpulsePoint& p) const;
   [[nodiscard]] std::string broken() const;
-  [[nodiscard]] std::string names_of(int a, int b) const;
   /// "the contact of body 'a' and the ground", "the stop of joint 'knee'".
   [[nodiscard]] std::string name_of(const Row& row) const;
-  [[nodiscard]] std::string name_of(const Stop& stop) const;
 
   const System* system_;
   BodyContacts* contacts_ = nullptr;        ///< Null: none.

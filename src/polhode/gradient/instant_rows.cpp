@@ -6,6 +6,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/gradient/instant_rows.hpp>
 #include <polhode/math/cayley.hpp>
+#include <polhode/system/unilateral_stops.hpp>
 
 namespace polhode {
 
@@ -42,12 +43,7 @@ std::vector<BodyStep> instant_steps(const System& system, const State& state) {
   return steps;
 }
 
-bool InstantRows::of(const System& system) {
-  if (!system.unilateral().empty()) return true;
-  if (!system.contacts() || !system.contacts()->impulsive()) return false;
-  const ImpulseOptions* impulses = system.contacts()->impulsive()->impulses();
-  return impulses && impulses->rigid;
-}
+bool InstantRows::of(const System& system) { return has_unilateral_rows(system); }
 
 InstantRows::InstantRows(const System& system, double dt)
     : system_(&system), dt_(dt), contacts_(system.contacts().get()) {
@@ -184,16 +180,8 @@ double InstantRows::size_of_speed(const State& state, const InstantRow& row) con
 }
 
 std::string InstantRows::name(const InstantRow& row) const {
-  if (!row.is_contact()) {
-    const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(row.interaction)];
-    return format("the stop of {} '{}'", system_->group(ref.group).kind(), system_->name(ref));
-  }
-  const auto of = [&](int body) {
-    return body == kGround
-               ? std::string("the ground")
-               : format("body '{}'", system_->bodies()[static_cast<std::size_t>(body)].name);
-  };
-  return format("the contact of {} and {}", of(row.a), of(row.b));
+  return row.is_contact() ? "the contact of " + pair_name(*system_, row.a, row.b)
+                          : stop_name(*system_, row.interaction);
 }
 
 }  // namespace polhode

@@ -76,7 +76,7 @@ class ProjectionDerivative {
     std::unique_ptr<linear::LinearSolver> solver;
     linear::KktValues values;  ///< M and G.
     linear::KktValues by_q;    ///< Of the terms by (dr, dφ), at fixed x.
-    /// Of an impact's terms by (dr, dφ) of its two bodies.
+    /// Derivative of the terms of an impact by (dr, dφ) of its two bodies.
     Eigen::Matrix<double, 12, 12> impulse_by_q;
     Eigen::Matrix<double, 12, 1> speed_by_q;
   };

@@ -29,8 +29,8 @@ struct RunTape {
   std::vector<State> ends;                       ///< The start, and the ends of all whole steps.
   std::vector<std::vector<TapeMember>> members;  ///< By whole step: one, or those extrapolated.
   StepSequence sequence;
-  /// Row that closes at the end of each step, whose length is that until its gap is zero, and event
-  /// that occurs there, −1 for none; empty for models without unilateral rows and events.
+  /// Rows that close at the ends of steps, which are as long as it takes their gaps to become zero,
+  /// and events there, −1 for none; empty for models without unilateral rows and events.
   std::vector<std::optional<InstantRow>> closings;
   std::vector<int> events;
   std::vector<std::optional<EventMargin>> margins;  ///< By event.

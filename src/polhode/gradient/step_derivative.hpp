@@ -71,8 +71,8 @@ class StepDerivative {
   /// speed [-]: velocities have jumped there.
   [[nodiscard]] int jumped_body() const { return jumped_; }
   [[nodiscard]] double jump() const { return jump_; }
-  /// Largest force or moment that the step leaves open, as a part of the terms it consists of [-]:
-  /// of contacts and stops, which are not among its equations.
+  /// Largest force or moment that the step leaves open, as a part of the terms it consists of [-].
+  /// Those of contacts and stops are not among its equations.
   [[nodiscard]] double unbalanced(const Trial& step) const;
   /// Largest remainder of a solution so far, as a part of its right-hand side [-].
   [[nodiscard]] double defect() const { return defect_; }

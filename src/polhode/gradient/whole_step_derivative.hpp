@@ -62,8 +62,8 @@ class WholeStepDerivative {
   [[nodiscard]] double of_end(ParameterShift& shift, std::size_t step) const;
   /// Derivative of the end of a step by its length.
   [[nodiscard]] Vec by_length(const ByTime& times);
-  /// Derivative by the state of what is zero at the end of a step: the gap of a row, or the margin
-  /// of an event.
+  /// Derivative by the state of what is zero at the end of a step: gap of a row, or margin of an
+  /// event.
   [[nodiscard]] Vec by_state(std::size_t step) const;
   void linearize_impact(std::size_t step);
   void check_rate(std::size_t step, double rate) const;

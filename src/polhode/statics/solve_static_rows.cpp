@@ -200,12 +200,14 @@ bool StaticRows::solve(double s, const std::function<void(Vec&)>& respond, Vec& 
     const RowReport report = problem.solve(p, kRowTolerance * accuracy_, &guess);
     if (!report.converged) {
       const Row& row = rows_[static_cast<std::size_t>(std::max<Eigen::Index>(0, report.worst))];
-      unsolved_ =
-          format("the rows of {} are not solved: they miss by {:.2g} m",
-                 row.source < static_cast<int>(points_.size())
-                     ? "the contact of " + names_of(row.a, row.b)
-                     : name_of(stops_[static_cast<std::size_t>(row.source) - points_.size()]),
-                 report.error);
+      unsolved_ = format(
+          "the rows of {} are not solved: they miss by {:.2g} m",
+          row.source < static_cast<int>(points_.size())
+              ? "the contact of " + names_of(row.a, row.b)
+              : stop_name(
+                    *system_,
+                    stops_[static_cast<std::size_t>(row.source) - points_.size()].interaction),
+          report.error);
     }
     x = without;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -309,7 +311,7 @@ std::string StaticRows::inadmissible() const {
     if (what) return format("the contact of {} {}", names_of(c.at.a, c.at.b), what);
   }
   for (const Stop& stop : stops_)
-    if (stop.force < -error) return format("{} pulls", name_of(stop));
+    if (stop.force < -error) return format("{} pulls", stop_name(*system_, stop.interaction));
   return {};
 }
 
@@ -353,7 +355,7 @@ double StaticRows::gap_of_closing() const {
 std::string StaticRows::overlap() const {
   for (const Stop& stop : stops_)
     if (stop.exists && stop.row.gap_n1 < -kOverlapGaps * touching_)
-      return format("{} would be passed", name_of(stop));
+      return format("{} would be passed", stop_name(*system_, stop.interaction));
   for (const Contact& c : points_)
     if (c.at.gap < -kOverlapGaps * touching_)
       return format("{} would overlap", names_of(c.at.a, c.at.b));
@@ -402,19 +404,9 @@ void StaticRows::commit(State& state) {
   contacts_->settled(state, settled);
 }
 
+/// The ground is named last.
 std::string StaticRows::names_of(int a, int b) const {
-  const auto name = [&](int body) {
-    return body == kGround
-               ? std::string("the ground")
-               : format("body '{}'", system_->bodies()[static_cast<std::size_t>(body)].name);
-  };
-  return a == kGround ? format("{} and {}", name(b), name(a))
-                      : format("{} and {}", name(a), name(b));
-}
-
-std::string StaticRows::name_of(const Stop& stop) const {
-  const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(stop.interaction)];
-  return format("the stop of {} '{}'", system_->group(ref.group).kind(), system_->name(ref));
+  return a == kGround ? pair_name(*system_, b, a) : pair_name(*system_, a, b);
 }
 
 std::vector<std::string> StaticRows::held() const {
@@ -431,7 +423,9 @@ std::vector<std::string> StaticRows::held() const {
     ++(sticks(c) ? at->second.sticking : at->second.sliding);
   }
   std::vector<std::string> list;
-  for (const auto& [name, count] : pairs) {
+  for (const auto& pair : pairs) {
+    const std::string& name = pair.first;
+    const auto& count = pair.second;
     const auto add = [&](int points, const char* how) {
       if (points > 0)
         list.push_back(format("the contact of {}: {} {}, {}", name, points,
@@ -441,7 +435,7 @@ std::vector<std::string> StaticRows::held() const {
     add(count.sliding, "held along the normal alone");
   }
   for (const Stop& stop : stops_)
-    if (stop.exists && acts(stop.force)) list.push_back(name_of(stop));
+    if (stop.exists && acts(stop.force)) list.push_back(stop_name(*system_, stop.interaction));
   return list;
 }
 
@@ -450,7 +444,8 @@ std::vector<std::string> StaticRows::touching() const {
   for (const Contact& c : points_)
     if (c.at.gap <= touching_) add_once(list, "the contact of " + names_of(c.at.a, c.at.b));
   for (const Stop& stop : stops_)
-    if (stop.exists && stop.row.gap_n1 <= touching_) add_once(list, name_of(stop));
+    if (stop.exists && stop.row.gap_n1 <= touching_)
+      add_once(list, stop_name(*system_, stop.interaction));
   return list;
 }
 

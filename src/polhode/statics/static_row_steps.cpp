@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Load steps with unilateral rows: where contacts close, and jumps of bodies that rub.
+// Load steps with unilateral rows: closing contacts, and jumps of bodies that touch with friction.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -17,8 +17,8 @@ namespace polhode {
 
 namespace {
 
-/// Length of the step with which candidates are searched [s]: it sets margins by the fall in it,
-/// which affect cost alone.
+/// Length of the step with which candidates are searched [s]. The margins by the fall in it affect
+/// cost alone.
 constexpr double kSearchStep = 1e-2;
 /// Accuracy of gaps, as a part of those that count as closed, and their rounding relative to the
 /// distance from the origin.
@@ -57,19 +57,7 @@ StaticRows::StaticRows(const System& system)
   context_.dt = kSearchStep;
   context_.ga.alpha_f = 1.0;
   context_.conserving = false;
-  for (const int i : system.unilateral()) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
-    const InteractionTraits& traits = system.traits(ref);
-    for (int k = 0; k < traits.unilateral; ++k) {
-      Stop& stop = stops_.emplace_back();
-      stop.interaction = i;
-      stop.a = ref.a;
-      stop.b = ref.b;
-      stop.number = k;
-      stop.memory = ref.first_history + traits.unilateral_entry +
-                    k * static_cast<int>(kNumbersOf<UnilateralMemory>);
-    }
-  }
+  for (const UnilateralStop& stop : unilateral_stops(system)) stops_.push_back({stop});
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.assign(n + 1, BodyStep::ground(1.0));
   instants_ = steps_;

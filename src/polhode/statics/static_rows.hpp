@@ -13,14 +13,14 @@
 #include <polhode/linear/kkt.hpp>
 #include <polhode/system/body_contacts.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
-#include <polhode/system/unilateral_row.hpp>
+#include <polhode/system/unilateral_stops.hpp>
 
 namespace polhode {
 
 /// Unilateral rows of an equilibrium: contacts of rigid shapes, and stops of joints, that are rows
 /// as in a step in time. A row has a force p ≥ 0 with p g = 0 and g ≥ 0 at the equilibrium;
-/// contacts that touched at the last one have Coulomb friction against the slip since then. Forces
-/// that rows share are the smallest, whatever the order of the rows. @eq{statics-rows}
+/// contacts that touched at the last one have Coulomb friction against the slip since then. Rows
+/// share a load by the smallest forces, whatever their order. @eq{statics-rows}
 class StaticRows {
  public:
   explicit StaticRows(const System& system);
@@ -39,8 +39,9 @@ class StaticRows {
   /// if `hold` the rows that act, as rows of joints.
   void extend(linear::KktTopology& topology, linear::KktValues& values, double s, bool hold) const;
   /// Increments of bodies with rows, by the row problem.
-  /// @param respond  Solves with the matrix, in place. @param x  Increments without further forces
-  /// of rows; with them. @returns whether it is solved; unsolved() is the message if not.
+  /// @param respond  Solves with the matrix, in place.
+  /// @param x  Increments without further forces of rows; with them.
+  /// @returns whether it is solved; unsolved() is the message if not.
   [[nodiscard]] bool solve(double s, const std::function<void(Vec&)>& respond, Vec& x);
   [[nodiscard]] const std::string& unsolved() const { return unsolved_; }
   /// Part of these increments in which no two bodies pass each other.
@@ -104,11 +105,8 @@ class StaticRows {
     [[nodiscard]] bool rubs() const { return at.friction > 0.0; }
   };
   /// A stop of an interaction.
-  struct Stop {
-    int interaction = 0, a = kGround, b = kGround, number = 0, memory = 0;
-    bool exists = false, listed = false;
-    double force = 0.0, next = 0.0;  ///< At the iterate, and after the increment [N].
-    UnilateralRow row;
+  struct Stop : UnilateralStop {
+    double force = 0.0, next = 0.0;         ///< At the iterate, and after the increment [N].
     Eigen::Matrix<double, 12, 12> by = {};  ///< Derivative of (by_a, by_b) by the increments.
   };
   struct Row {
@@ -136,7 +134,6 @@ class StaticRows {
   [[nodiscard]] bool list_violated(const Vec& x);
   [[nodiscard]] std::string names_of(int a, int b) const;
   [[nodiscard]] std::string rubbing_name(const Contact& c) const;
-  [[nodiscard]] std::string name_of(const Stop& stop) const;
   [[nodiscard]] static double change(const Row& row, const Vec& x) {
     return (row.a == kGround ? 0.0 : row.on_a.dot(x.segment<6>(6 * row.a))) +
            (row.b == kGround ? 0.0 : row.on_b.dot(x.segment<6>(6 * row.b)));

@@ -169,7 +169,8 @@ void StaticNewton::count_unstable(StaticStep& step) {
   start_scratch(work_);
   hold_ = true;
   assemble_unmixed();
-  // Where round bodies roll the stiffness is not symmetric: then the count is that of its part.
+  // The stiffness of round bodies that roll is not symmetric; the count is that of its symmetric
+  // part.
   const bool symmetric = make_symmetric() || rows_;
   const bool factored = solver_.factor(matrix_, symmetric);
   if (!factored || nearly_singular()) {
