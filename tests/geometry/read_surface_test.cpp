@@ -201,7 +201,45 @@ TEST(ReadObj, ReportsErrorsWithTheirLocation) {
 TEST(ReadSurface, RefusesOtherFormats) {
   EXPECT_EQ(refusal("part.step", "ISO-10303-21;"),
             "part.step: a surface cannot be read from a file ending in '.step'. Use .stl (text or "
-            "binary) or .obj.");
+            "binary), .obj, or .msh of MuJoCo.");
+}
+
+std::string msh(const geometry::TriangleSurface& surface) {
+  std::string bytes;
+  const auto count = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
+  for (const std::uint32_t n :
+       {count(surface.points.size()), 1U, 2U, count(surface.triangles.size())})
+    append(bytes, n);
+  for (const Vec3& x : surface.points)
+    for (const double coordinate : x)
+      append(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(coordinate)));
+  bytes.append(12 + 16, '\x7f');  // a normal and two points of a texture, which are not read
+  for (const auto& triangle : surface.triangles)
+    for (const int i : triangle) append(bytes, static_cast<std::uint32_t>(i));
+  return bytes;
+}
+
+TEST(ReadSurface, ReadsBinaryMeshesOfMujoco) {
+  const std::string bytes = msh(box());
+  expect_box(geometry::parse_surface("a.msh", bytes), {0, 0, 0});
+  const std::string hint = " Export the file again from the program that made it.";
+  EXPECT_EQ(refusal("a.msh", bytes.substr(0, 9)),
+            "a.msh: the file has 9 bytes and is no MSH file." + hint);
+  EXPECT_EQ(refusal("a.msh", bytes.substr(0, bytes.size() - 1)),
+            format("a.msh: the file has {} bytes, but declares 8 points and 12 triangles, which "
+                   "are {} bytes.",
+                   bytes.size() - 1, bytes.size()) +
+                hint);
+  std::string other = bytes;
+  other[bytes.size() - 4] = 9;
+  EXPECT_EQ(refusal("a.msh", other),
+            "a.msh: triangle 12: point 9 is used, but there are 8 points." + hint);
+  other = bytes;
+  for (std::size_t k = 16; k < 20; ++k) other[k] = '\xff';
+  EXPECT_EQ(refusal("a.msh", other),
+            "a.msh: point 1: has a coordinate that is not a finite number." + hint);
+  EXPECT_NE(refusal("a.msh", "$MeshFormat\n4.1 0 8\n").find("is a mesh of Gmsh"),
+            std::string::npos);
 }
 
 TEST(ReadSurface, ReadsAFileAndNamesOneThatIsMissing) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <loads/load_samples.hpp>
+#include <polhode/loads/axis_drag.hpp>
 #include <polhode/loads/bushing.hpp>
 #include <polhode/loads/coordinate_row.hpp>
 #include <polhode/loads/drag.hpp>
@@ -210,6 +211,15 @@ TEST(Connectors, DragAndDampersDissipateTheWorkOfTheirForces) {
   };
   expect_laws<Drag>(change);
   expect_laws<VectorDamper>(change);
+}
+
+// @tests{axis-drag-law}
+TEST(Connectors, DragByAxesDissipatesTheWorkOfItsForces) {
+  expect_laws<AxisDrag>([](LoadDescription& d) {
+    double value = 0.2;
+    for (const char* key : {"linear", "quadratic", "turning", "quadratic_turning"})
+      for (const char* axis : {".x", ".y", ".z"}) d.values[std::string(key) + axis] = value += 0.1;
+  });
 }
 
 namespace {

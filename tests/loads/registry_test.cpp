@@ -40,7 +40,7 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
         "loads: the type 'torque' is not known. Use one of: force, moment, "
         "spring_damper, potential, axial_force, vector_damper, bushing, attraction, "
         "gravity_gradient, "
-        "drag, rotor, "
+        "drag, axis_drag, rotor, "
         "torsional_spring, translational_spring, rotary_motor, linear_motor, "
         "rotary_servo, linear_servo, rotary_inerter, linear_inerter, gear, screw, coupling, "
         "point_on_surface, point_on_curve, curve_on_curve, slide_on_beam, rolling.");

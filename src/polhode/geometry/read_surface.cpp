@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
 #include <charconv>
@@ -233,6 +234,55 @@ TriangleSurface parse_obj(const std::string& name, std::string_view text) {
   return surface;
 }
 
+// MSH of MuJoCo: counts of points, normals, texture coordinates and triangles; then these.
+
+constexpr std::size_t kCounts = 16;  // bytes
+
+TriangleSurface parse_msh(const std::string& name, std::string_view bytes) {
+  if (bytes.starts_with("$MeshFormat"))
+    throw InputError(name, "the file is a mesh of Gmsh, and no surface of MuJoCo's format",
+                     "Give it as the mesh of a solid, or export it as STL");
+  std::array<std::size_t, 4> count{};
+  for (std::size_t k = 0; k < 4 && bytes.size() >= kCounts; ++k)
+    count[k] = little_endian(bytes, 4 * k);
+  const auto [points, normals, coordinates, triangles] = count;
+  const std::size_t size = kCounts + 12 * (points + normals + triangles) + 8 * coordinates;
+  if (bytes.size() < kCounts || bytes.size() != size)
+    throw InputError(name,
+                     bytes.size() < kCounts
+                         ? format("the file has {} bytes and is no MSH file", bytes.size())
+                         : format("the file has {} bytes, but declares {} points and {} triangles, "
+                                  "which are {} bytes",
+                                  bytes.size(), points, triangles, size),
+                     kExportAgain);
+  TriangleSurface surface;
+  surface.points.reserve(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    Vec3 x;
+    for (std::size_t k = 0; k < 3; ++k)
+      x[static_cast<Eigen::Index>(k)] =
+          std::bit_cast<float>(little_endian(bytes, kCounts + 12 * i + 4 * k));
+    if (!x.allFinite())
+      throw InputError(format("{}: point {}", name, i + 1),
+                       "has a coordinate that is not a finite number", kExportAgain);
+    surface.points.push_back(x);
+  }
+  const std::size_t first = size - 12 * triangles;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    std::array<int, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t point = little_endian(bytes, first + 12 * i + 4 * k);
+      if (point >= points)
+        throw InputError(format("{}: triangle {}", name, i + 1),
+                         format("point {} is used, but there are {} points", point, points),
+                         kExportAgain);
+      corners[k] = static_cast<int>(point);
+    }
+    surface.triangles.push_back(corners);
+  }
+  return surface;
+}
+
 std::string ending_of(const std::string& name) {
   const std::size_t dot = name.rfind('.');
   std::string ending = dot == std::string::npos ? "" : name.substr(dot);
@@ -245,13 +295,15 @@ std::string ending_of(const std::string& name) {
 
 TriangleSurface parse_surface(const std::string& name, std::string_view bytes) {
   const std::string ending = ending_of(name);
-  if (ending != ".stl" && ending != ".obj")
+  if (ending != ".stl" && ending != ".obj" && ending != ".msh")
     throw InputError(name, format("a surface cannot be read from a file ending in '{}'", ending),
-                     "Use .stl (text or binary) or .obj");
+                     "Use .stl (text or binary), .obj, or .msh of MuJoCo");
   if (bytes.size() > std::size_t(std::numeric_limits<int>::max()))
     throw InputError(name, format("the file has {} bytes, which is too large", bytes.size()),
                      "Reduce the number of triangles");
-  TriangleSurface surface = ending == ".stl" ? parse_stl(name, bytes) : parse_obj(name, bytes);
+  TriangleSurface surface = ending == ".stl"   ? parse_stl(name, bytes)
+                            : ending == ".obj" ? parse_obj(name, bytes)
+                                               : parse_msh(name, bytes);
   if (surface.triangles.empty()) throw InputError(name, "the file has no triangles", kExportAgain);
   join_equal_points(surface);
   return surface;

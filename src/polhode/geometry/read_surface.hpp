@@ -8,7 +8,8 @@
 
 namespace polhode::geometry {
 
-/// Reads a triangle surface; the format follows from the file name: .stl (text or binary) or .obj.
+/// Reads a triangle surface; the format follows from the file name: .stl (text or binary), .obj, or
+/// .msh of MuJoCo.
 ///
 /// Corners with equal coordinates are merged. Polygons of an .obj become fans of triangles. Nothing
 /// else is repaired: see check_closed() and orient_outward().

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/loads/axis_drag.hpp>
 #include <polhode/loads/bushing.hpp>
 #include <polhode/loads/coordinate_row.hpp>
 #include <polhode/loads/curve_on_curve.hpp>
@@ -193,6 +194,7 @@ const std::vector<LoadKind>& load_kinds() {
        {},
        {},
        {"linear", "quadratic", "turning", "per_mass"}},
+      axis_drag_kind(),
       rotor_kind(),
       {"torsional_spring",
        "spring and damper about a free axis of a joint",

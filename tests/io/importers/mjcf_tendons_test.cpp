@@ -149,8 +149,6 @@ TEST_F(Mjcf, MotorsOfSumsDriveAllTheirJoints) {
   const Model model = read(text + "<motor name='m' tendon='t'/></actuator>");
   EXPECT_EQ((*load_of(model, "m_p")->value)(0.0), 6.0);
   EXPECT_EQ((*load_of(model, "m_q")->value)(0.0), -3.0);
-  EXPECT_THAT(fault(text + "<position name='m' tendon='t'/></actuator>"),
-              HasSubstr("the actuator 'm' is a servo of the sum of 2 coordinates"));
 }
 
 TEST_F(Mjcf, TendonsThatCannotBeReadAreNamed) {
@@ -180,24 +178,26 @@ TEST_F(Mjcf, TendonsThatCannotBeReadAreNamed) {
               HasSubstr("'damping' of the tendon 't' is a polynomial"));
   EXPECT_THAT(fault(spatial("armature='1'", kStraight)),
               HasSubstr("the tendon 't' has an armature"));
-  EXPECT_THAT(fault(spatial("range='0 1'", kStraight)),
-              HasSubstr("the tendon 't' has limits or friction"));
+  EXPECT_THAT(fault(spatial("range='0 1'", kBent)),
+              HasSubstr("the tendon 't' has limits of a length over several points"));
+  EXPECT_THAT(notes(spatial("range='0 1'", kStraight)),
+              HasSubstr("there is no 't_limits', as the length is 2 at the start, outside of it"));
+  EXPECT_THAT(fault(spatial("frictionloss='1'", kStraight)),
+              HasSubstr("the tendon 't' has friction of a line"));
   EXPECT_THAT(notes(spatial("", kBent)),
               HasSubstr("a tendon without stiffness, damping and actuator exerts no force"));
   EXPECT_THAT(notes(spatial("stiffness='1'", "<site site='a'/><site site='b'/>")),
               HasSubstr("the tendon 't' is between points that do not move"));
-  EXPECT_THAT(fault(spatial("", kBent) + "<actuator><position name='p' tendon='t'/></actuator>"),
-              HasSubstr("the actuator 'p' is a servo of the length of 't'"));
   EXPECT_THAT(fault(spatial("", kBent) + "<actuator><muscle name='p' tendon='t'/></actuator>"),
               HasSubstr("the actuator 'p' is a muscle with curves of its own"));
   const auto sum = [&](const std::string& attributes, const std::string& joints) {
     return fault(kSites + "<tendon><fixed name='t' " + attributes + ">" + joints +
                  "</fixed></tendon>");
   };
-  EXPECT_THAT(sum("stiffness='1'", ""),
-              HasSubstr("the fixed tendon 't' of 0 joints has a stiffness or damping"));
-  EXPECT_THAT(sum("stiffness='1' springlength='0 1'", "<joint joint='x' coef='1'/>"),
-              HasSubstr("the fixed tendon 't' is without force over a range"));
+  EXPECT_THAT(notes(kSites + "<tendon><fixed name='t' stiffness='1'/></tendon>"),
+              HasSubstr("a fixed tendon without joints exerts no force"));
+  EXPECT_THAT(sum("range='1 0' limited='true'", "<joint joint='x' coef='1'/>"),
+              HasSubstr("the tendon 't' has the limits 1 to 0"));
   EXPECT_THAT(sum("", "<joint joint='y' coef='1'/>"), HasSubstr("there is no joint 'y'"));
 }
 

@@ -2,12 +2,16 @@
 #include <polhode/io/importers/mjcf.hpp>
 
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/importers/mjcf_actuators.hpp>
 #include <polhode/io/importers/mjcf_bodies.hpp>
+#include <polhode/io/importers/mjcf_contacts.hpp>
 #include <polhode/io/importers/mjcf_keyframe.hpp>
+#include <polhode/io/importers/mjcf_medium.hpp>
 #include <polhode/io/importers/mjcf_sensors.hpp>
 #include <polhode/io/importers/mjcf_tendons.hpp>
 #include <polhode/io/importers/write_robot.hpp>
@@ -34,22 +38,23 @@ class MjcfReader {
     MjcfGeoms geoms(file_, folder);
     MjcfBodies bodies(file_, geoms, refusals_, options_, robot_);
     bodies.read();
+    add_medium(medium_, refusals_, bodies, robot_);
     if (robot_.links.size() < 2)
       xml_.fault(xml_.root(), "the model has no body", "Add <body> to <worldbody>.");
-    const std::vector<double> controls =
-        read_keyframe(file_, options_, actuators_of(file_).size(), robot_);
+    const MjcfControls controls = read_keyframe(file_, options_, activations_of(file_), robot_);
     MjcfTendons tendons(file_, refusals_, bodies, options_, robot_);
     tendons.read();
     for (const Element* e : file_.sections("equality")) read_equality(*e, bodies, tendons.sums());
     read_actuators(file_, refusals_, bodies, options_, controls, tendons, robot_);
     tendons.finish();
     read_sensors(file_, bodies, robot_);
+    read_contacts(file_, bodies, options_, robot_);
     for (const Element* e : file_.sections("deformable")) {
       xml_.skip(*e);
       refusals_.add(*e, "<deformable> is not read", "Leave it out.");
     }
     file_.ignored.skip(xml_.root(),
-                       {"asset", "contact", "visual", "size", "statistic", "custom", "extension"});
+                       {"asset", "visual", "size", "statistic", "custom", "extension"});
     file_.ignored.add_unread();
     return std::move(robot_);
   }
@@ -59,16 +64,16 @@ class MjcfReader {
     bool weightless = false;
     for (const Element* e : file_.sections("option")) {
       if (const auto g = xml_.vector(*e, "gravity")) robot_.gravity = *g;
-      for (const char* medium : {"density", "viscosity"})
-        if (xml_.number(*e, medium).value_or(0.0) != 0.0)
-          refusals_.add(*e, format("the medium has a {}", medium),
-                        "Add loads of type drag instead.");
+      if (const auto value = xml_.number(*e, "density")) medium_.density = *value;
+      if (const auto value = xml_.number(*e, "viscosity")) medium_.viscosity = *value;
+      if (const auto wind = xml_.vector(*e, "wind")) medium_.wind = !wind->isZero(0.0);
+      medium_.at = e;
       if (const Element* flag = xml_.child(*e, "flag")) {
         weightless = weightless || xml_.text(*flag, "gravity").value_or("") == "disable";
         xml_.skip(*flag);
       }
       xml_.skip(*e);
-      file_.ignored.add(*e, "<option> other than gravity", "belongs to another solver");
+      file_.ignored.add(*e, "<option> other than gravity and medium", "belongs to another solver");
     }
     if (weightless) robot_.gravity.setZero();
   }
@@ -211,7 +216,19 @@ class MjcfReader {
     file_.notes.push_back(
         {ImportNote::Kind::approximated, xml_.place(tag.e),
          format("the constraint {} holds exactly, and is soft in MuJoCo", quote(name))});
+    mark_loop(loop);
     robot_.loops.push_back(std::move(loop));
+  }
+
+  /// Joints between two links that a constraint connects: what they hold is the loop as it is.
+  void mark_loop(const RobotLoop& loop) {
+    std::map<std::string, RobotJoint*> above;
+    for (RobotJoint& joint : robot_.joints) above[joint.child] = &joint;
+    std::set<RobotJoint*> in_one;
+    for (std::string link : loop.links)
+      for (auto at = above.find(link); at != above.end(); at = above.find(at->second->parent))
+        if (!in_one.insert(at->second).second) in_one.erase(at->second);
+    for (RobotJoint* joint : in_one) joint->in_loop = true;
   }
 
   XmlFile& xml_;
@@ -219,6 +236,7 @@ class MjcfReader {
   MjcfFile file_;
   MjcfRefusals refusals_;
   Robot robot_;
+  MjcfMedium medium_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/importers/mjcf_inertia.hpp>
+#include <polhode/io/importers/mjcf_medium.hpp>
 
 namespace polhode::io {
 
@@ -31,7 +32,7 @@ int MjcfBodies::add_link(const std::string& name, const Element& at) {
 void MjcfBodies::read() {
   const Element& root = file_.xml.root();
   const int world = add_link("world", root);
-  std::vector<MassProperties> parts;
+  Parts parts;
   for (const Element* e : file_.sections("worldbody"))
     read_content(*e, {"world", world, {}, file_.xml.text(*e, "childclass").value_or("")}, parts,
                  false);
@@ -68,8 +69,7 @@ void MjcfBodies::tune() {
   }
 }
 
-void MjcfBodies::read_content(const Element& e, const Place& place,
-                              std::vector<MassProperties>& parts, bool massive) {
+void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts, bool massive) {
   XmlFile& xml = file_.xml;
   for (const Element* inner = e.FirstChildElement(); inner != nullptr;
        inner = inner->NextSiblingElement()) {
@@ -78,7 +78,13 @@ void MjcfBodies::read_content(const Element& e, const Place& place,
       static_cast<void>(xml.children(e, "geom"));
       const MjcfGeom geom =
           geoms_.read({file_, *inner, {"geom"}, place.child_class}, place.frame, massive);
-      if (geom.mass) parts.push_back(*geom.mass);
+      if (geom.ellipsoid) ellipsoids_.push_back(inner);
+      if (geom.mass) {
+        parts.mass.push_back(*geom.mass);
+        parts.axes = geom.axes;
+      }
+      if (const auto own = xml.text(*inner, "name"))
+        touching_[*own] = {place.link, geom.friction, geom.dimensions};
       if (const auto own = xml.text(*inner, "name"); own && geom.shape)
         if (const std::string& kind = geom.shape->kind; kind == "sphere" || kind == "cylinder")
           wraps_[*own] = {place.link, geom.shape->pose, kind == "sphere",
@@ -120,7 +126,7 @@ void MjcfBodies::read_content(const Element& e, const Place& place,
   file_.ignored.skip(e, {"camera", "light"});
 }
 
-MassProperties MjcfBodies::inertial(const Element& e) {
+MassProperties MjcfBodies::inertial(const Element& e, Mat3& axes) {
   XmlFile& xml = file_.xml;
   const MjcfTag tag{file_, e, {}, ""};
   MassProperties mass;
@@ -142,6 +148,7 @@ MassProperties MjcfBodies::inertial(const Element& e) {
   const Mat3 R = tag.rotation();
   const Mat3 turned = R * J * R.transpose();
   mass.inertia = 0.5 * (turned + turned.transpose());
+  axes = J.isDiagonal(0.0) ? R : rotated_to_principal(mass.inertia);
   return mass;
 }
 
@@ -164,9 +171,6 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
   if (!given.empty() && frames_.contains(given))
     xml.fault(e, format("the body {} stands twice", quote(given)), "Rename one of them.");
   const std::string name = given.empty() ? format("body_{}", robot_.links.size()) : given;
-  if (xml.number(e, "gravcomp").value_or(0.0) != 0.0)
-    refusals_.add(e, format("gravity is compensated at {}", quote(name)),
-                  "Leave 'gravcomp' out, and add a force.");
   if (xml.text(e, "mocap").value_or("false") == "true")
     file_.notes.push_back({ImportNote::Kind::approximated, xml.place(e),
                            format("the mocap body {} is fixed", quote(name))});
@@ -212,20 +216,25 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
   const auto how = file_.compiler.inertia;
   const bool from_geoms = how == MjcfCompiler::FromGeoms::always ||
                           (how == MjcfCompiler::FromGeoms::automatic && given_mass == nullptr);
-  std::vector<MassProperties> parts;
+  Parts parts;
   read_content(e, {above, body, {}, child_class}, parts, from_geoms);
   MassProperties mass;
-  if (given_mass != nullptr) mass = inertial(*given_mass);
-  if (from_geoms && !parts.empty()) mass = geometry::composed(parts);
+  Mat3 axes = Mat3::Identity();
+  if (given_mass != nullptr) mass = inertial(*given_mass, axes);
+  if (from_geoms && !parts.mass.empty()) {
+    mass = geometry::composed(parts.mass);
+    axes = parts.mass.size() == 1 ? parts.axes : rotated_to_principal(mass.inertia);
+  }
+  axes_[robot_.links[static_cast<std::size_t>(body)].name] = axes;
   bound(mass);
   robot_.links[static_cast<std::size_t>(body)].mass = mass;
   robot_.links[static_cast<std::size_t>(body)].has_inertial = mass.mass > 0.0;
+  robot_.links[static_cast<std::size_t>(body)].carried = xml.number(e, "gravcomp").value_or(0.0);
 }
 
 void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
-  file_.ignored.attributes(
-      tag.e, {"group", "user", "solreflimit", "solimplimit", "solreffriction", "solimpfriction",
-              "margin", "actuatorgravcomp", "align", "actuatorfrcrange", "actuatorfrclimited"});
+  file_.ignored.attributes(tag.e, {"group", "user", "solreflimit", "solimplimit", "solreffriction",
+                                   "solimpfriction", "margin", "actuatorgravcomp", "align"});
   if (std::string_view(tag.e.Name()) == "freejoint") {
     joint.type = "floating";
     return;
@@ -293,6 +302,12 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
     const double value = tag.number(attribute, 0.0);
     return joint.turns() ? file_.angle(value) : value;
   };
+  if (const auto range = tag.numbers("actuatorfrcrange", 2, 2);
+      !range.empty() && range[0] < range[1] &&
+      tag.boolean("actuatorfrclimited", file_.compiler.auto_limits)) {
+    joint.least_effort = range[0];
+    joint.most_effort = range[1];
+  }
   joint.zero = coordinate("ref");
   joint.rest = coordinate("springref");
   read_limits(tag, joint);

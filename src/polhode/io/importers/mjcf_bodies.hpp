@@ -50,6 +50,20 @@ class MjcfBodies {
   };
   [[nodiscard]] const std::map<std::string, Wrap>& wraps() const { return wraps_; }
 
+  /// Geoms for pairs of contact.
+  struct Touching {
+    std::string link;
+    std::array<double, 3> friction;
+    double dimensions;
+  };
+  [[nodiscard]] const std::map<std::string, Touching>& touching() const { return touching_; }
+  /// Axes of inertia of each body, in its coordinates.
+  [[nodiscard]] const std::map<std::string, Mat3>& axes() const { return axes_; }
+  /// Geoms around which a medium flows as around ellipsoids.
+  [[nodiscard]] const std::vector<const XmlFile::Element*>& ellipsoids() const {
+    return ellipsoids_;
+  }
+
  private:
   using Element = XmlFile::Element;
   /// A body, or a <frame> in it, while its content is read.
@@ -59,14 +73,19 @@ class MjcfBodies {
     Pose frame;  ///< Of the tag in the coordinates of the link.
     std::string child_class;
   };
+  /// Mass of the geoms of a body, in its coordinates.
+  struct Parts {
+    std::vector<geometry::MassProperties> mass;
+    Mat3 axes = Mat3::Identity();  ///< Axes of inertia of the last one.
+  };
   [[nodiscard]] int add_link(const std::string& name, const Element& at);
-  void read_content(const Element& e, const Place& place,
-                    std::vector<geometry::MassProperties>& parts, bool massive);
+  void read_content(const Element& e, const Place& place, Parts& parts, bool massive);
   void read_body(const Element& e, const Place& parent);
   void read_joint(const MjcfTag& tag, RobotJoint& joint);
   void read_limits(const MjcfTag& tag, RobotJoint& joint);
   void read_ball(const MjcfTag& tag, RobotJoint& joint);
-  [[nodiscard]] geometry::MassProperties inertial(const Element& e);
+  /// @param axes  Its axes of inertia, if it gives them.
+  [[nodiscard]] geometry::MassProperties inertial(const Element& e, Mat3& axes);
   void tune();
   void bound(geometry::MassProperties& mass) const;
 
@@ -78,6 +97,9 @@ class MjcfBodies {
   std::map<std::string, Pose> frames_;
   std::map<std::string, Site> sites_;
   std::map<std::string, Wrap> wraps_;
+  std::map<std::string, Touching> touching_;
+  std::map<std::string, Mat3> axes_;
+  std::vector<const Element*> ellipsoids_;
   std::set<std::string> joint_names_;
   /// A joint whose spring and damper follow from a time constant and a damping ratio.
   struct Tuned {

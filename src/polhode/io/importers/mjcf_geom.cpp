@@ -11,6 +11,7 @@
 #include <polhode/geometry/hull.hpp>
 #include <polhode/geometry/read_surface.hpp>
 #include <polhode/geometry/shapes.hpp>
+#include <polhode/io/importers/mjcf_medium.hpp>
 
 namespace polhode::io {
 
@@ -75,7 +76,8 @@ bool full_sizes(const std::string& type, const std::vector<double>& half, std::v
 
 }  // namespace
 
-MjcfGeoms::MjcfGeoms(MjcfFile& file, const std::string& folder) : file_(file), folder_(folder) {
+MjcfGeoms::MjcfGeoms(MjcfFile& file, const std::string& folder)
+    : file_(file), folder_(folder), in_pairs_(names_in_pairs()) {
   for (const auto* asset : file_.sections("asset"))
     for (const auto* e : file_.xml.children(*asset, "mesh")) {
       const MjcfTag tag{file_, *e, {"mesh"}, ""};
@@ -87,6 +89,17 @@ MjcfGeoms::MjcfGeoms(MjcfFile& file, const std::string& folder) : file_(file), f
       meshes_[name] = {e, path, tag.vector("scale", Vec3::Ones()), tag.text("inertia", "legacy")};
       file_.ignored.attributes(*e, {"class", "maxhullvert", "smoothnormal", "content_type"});
     }
+}
+
+/// Names of geoms that touch in pairs of their own.
+std::set<std::string> MjcfGeoms::names_in_pairs() {
+  std::set<std::string> names;
+  for (const auto* section : file_.sections("contact"))
+    for (const auto* e = section->FirstChildElement("pair"); e != nullptr;
+         e = e->NextSiblingElement("pair"))
+      for (const char* attribute : {"geom1", "geom2"})
+        if (const char* name = e->Attribute(attribute)) names.insert(name);
+  return names;
 }
 
 MassProperties MjcfGeoms::mass_of_mesh(const Mesh& mesh) {
@@ -108,17 +121,25 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   MjcfGeom geom;
   XmlFile& xml = file_.xml;
   const auto& e = tag.e;
-  file_.ignored.attributes(
-      e, {"name", "rgba", "material", "user", "condim", "priority", "friction", "solref", "solimp",
-          "solmix", "margin", "gap", "fitscale", "fluidshape", "fluidcoef", "shellinertia"});
+  file_.ignored.attributes(e, {"name", "rgba", "material", "user", "priority", "solref", "solimp",
+                               "solmix", "margin", "gap", "fitscale", "fluidcoef", "shellinertia"});
+  geom.ellipsoid = tag.text("fluidshape", "none") == "ellipsoid";
   const std::string type = tag.text("type", "sphere");
   const double group = tag.number("group", 0.0);
   geom.seen = group <= kLastShownGroup;
-  geom.touches = tag.number("contype", 1.0) != 0.0 || tag.number("conaffinity", 1.0) != 0.0;
+  const std::pair bits{static_cast<int>(tag.number("contype", 1.0)),
+                       static_cast<int>(tag.number("conaffinity", 1.0))};
+  geom.touches =
+      bits.first != 0 || bits.second != 0 || in_pairs_.contains(xml.text(e, "name").value_or(""));
+  if (const std::vector<double> friction = tag.numbers("friction", 1, 3); !friction.empty())
+    std::copy(friction.begin(), friction.end(), geom.friction.begin());
+  geom.dimensions = tag.number("condim", 3.0);
   massive = massive && group >= file_.compiler.groups[0] && group <= file_.compiler.groups[1];
   RobotShape shape;
   shape.at = &e;
   shape.kind = type;
+  shape.name = xml.text(e, "name").value_or("");
+  shape.contact_bits = bits;
   Pose pose = tag.pose();
   std::vector<double> half = tag.numbers("size", 1, 3);
   if (const auto ends = tag.numbers("fromto", 6, 6); !ends.empty()) {
@@ -167,6 +188,7 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
       const double rho = density(unit.mass);
       unit.mass *= rho;
       unit.inertia *= rho;
+      geom.axes = shape.pose.R * rotated_to_principal(unit.inertia / unit.mass);
       geom.mass = geometry::placed(unit, shape.pose.p, shape.pose.R);
     } catch (const InputError& error) {
       xml.fault(e,
@@ -201,6 +223,7 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   }
   try {
     const MassProperties own = geometry::shape_mass_properties("geom", *kind, shape.sizes, rho);
+    geom.axes = shape.pose.R;
     geom.mass = geometry::placed(own, shape.pose.p, shape.pose.R);
   } catch (const InputError& error) {  // Numbers that overflow.
     xml.fault(e, "the mass of <geom> cannot be computed: " + error.what_is_wrong(),

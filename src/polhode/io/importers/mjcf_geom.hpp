@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <polhode/io/importers/mjcf_file.hpp>
@@ -14,7 +16,11 @@ struct MjcfGeom {
   std::optional<RobotShape> shape;  ///< In the body's coordinates; none for what is not a shape.
   bool seen = true;                 ///< In a group that is shown by default.
   bool touches = true;              ///< Whether it takes part in contact.
-  std::optional<geometry::MassProperties> mass;  ///< In the body's coordinates.
+  std::array<double, 3> friction{1.0, 0.005, 0.0001};  ///< Sliding, torsional [m], rolling [m].
+  double dimensions = 3.0;                             ///< Of contact forces.
+  std::optional<geometry::MassProperties> mass;        ///< In the body's coordinates.
+  Mat3 axes = Mat3::Identity();                        ///< Its axes of inertia, likewise.
+  bool ellipsoid = false;                              ///< For the flow of a medium.
 };
 
 /// The geoms of an MJCF file, and the meshes that they use.
@@ -34,10 +40,12 @@ class MjcfGeoms {
     Vec3 scale;
     std::string inertia;  ///< How its mass properties are found.
   };
+  [[nodiscard]] std::set<std::string> names_in_pairs();
   [[nodiscard]] geometry::MassProperties mass_of_mesh(const Mesh& mesh);
 
   MjcfFile& file_;
   std::string folder_;
+  std::set<std::string> in_pairs_;
   std::map<std::string, Mesh> meshes_;
 };
 

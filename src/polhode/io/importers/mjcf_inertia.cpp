@@ -75,14 +75,22 @@ MjcfInertia::MjcfInertia(const Robot& robot, const std::map<std::string, Pose>& 
     for (int k = first_[j]; k < first_[j + 1]; ++k) mass(k, k) += robot.joints[j].armature;
   const Eigen::LLT<Eigen::MatrixXd> factors(mass);
   if (factors.info() == Eigen::Success)
-    mobility_ = factors.solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols())).diagonal();
+    mobility_ = factors.solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols()));
 }
 
 double MjcfInertia::effective(std::size_t joint) const {
   if (mobility_.size() == 0) return 0.0;
   const int count = first_[joint + 1] - first_[joint];
-  const double sum = mobility_.segment(first_[joint], count).sum();
+  const double sum = mobility_.diagonal().segment(first_[joint], count).sum();
   return count > 0 && sum > 0.0 ? count / sum : 0.0;
+}
+
+double MjcfInertia::effective(const std::vector<std::pair<std::size_t, double>>& sum) const {
+  if (mobility_.size() == 0) return 0.0;
+  double mobility = 0.0;
+  for (const auto& [i, a] : sum)
+    for (const auto& [j, b] : sum) mobility += a * b * mobility_(first_[i], first_[j]);
+  return mobility > 0.0 ? 1.0 / mobility : 0.0;
 }
 
 }  // namespace polhode::io

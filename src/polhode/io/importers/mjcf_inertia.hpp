@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <polhode/io/importers/robot.hpp>
@@ -23,12 +24,14 @@ class MjcfInertia {
   /// Inertia of a joint while all others are free to move, the harmonic mean over its velocities;
   /// zero if the matrix is not positive [kg m², kg].
   [[nodiscard]] double effective(std::size_t joint) const;
+  /// Likewise along a sum of coordinates of joints with one: factors by their numbers.
+  [[nodiscard]] double effective(const std::vector<std::pair<std::size_t, double>>& sum) const;
   /// Whether there are few enough joints.
   [[nodiscard]] bool is_there() const { return first_.back() <= kMost; }
 
  private:
   std::vector<int> first_;    ///< Number of the first velocity of each joint, and of all.
-  Eigen::VectorXd mobility_;  ///< Diagonal of the inverse matrix; empty if that is not positive.
+  Eigen::MatrixXd mobility_;  ///< Inverse of the matrix; empty if that is not positive.
 };
 
 }  // namespace polhode::io

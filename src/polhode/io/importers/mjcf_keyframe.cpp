@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/mjcf_keyframe.hpp>
 
+#include <algorithm>
+
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 
@@ -34,7 +36,7 @@ class KeyframeReader {
     }
   }
 
-  std::vector<double> read(std::size_t actuators) {
+  MjcfControls read(const std::vector<bool>& active) {
     const std::vector<double> q = list("qpos", "positions", whole_.positions);
     const std::vector<double> v = list("qvel", "velocities", whole_.velocities);
     std::size_t at_q = 0, at_v = 0;
@@ -45,7 +47,14 @@ class KeyframeReader {
       at_q += own.positions;
       at_v += own.velocities;
     }
-    return list("ctrl", "controls", actuators);
+    MjcfControls controls;
+    controls.controls = list("ctrl", "controls", active.size());
+    const auto count = static_cast<std::size_t>(std::count(active.begin(), active.end(), true));
+    const std::vector<double> given = list("act", "activations", count);
+    std::size_t next = 0;
+    for (const bool is : active)
+      controls.activations.push_back(is && next < given.size() ? given[next++] : 0.0);
+    return controls;
   }
 
  private:
@@ -90,8 +99,8 @@ class KeyframeReader {
 
 }  // namespace
 
-std::vector<double> read_keyframe(MjcfFile& file, const ImportOptions& options,
-                                  std::size_t actuators, Robot& robot) {
+MjcfControls read_keyframe(MjcfFile& file, const ImportOptions& options,
+                           const std::vector<bool>& active, Robot& robot) {
   std::vector<const Element*> keys;
   for (const Element* section : file.sections("keyframe"))
     for (const Element* key : file.xml.children(*section, "key")) keys.push_back(key);
@@ -110,18 +119,18 @@ std::vector<double> read_keyframe(MjcfFile& file, const ImportOptions& options,
                    names.empty() ? "The file has none."
                                  : did_you_mean(options.keyframe, names) +
                                        "Keyframes: " + name_list(names, 12) + ", none.");
-  std::vector<double> controls;
+  MjcfControls controls;
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (keys[k] != chosen) {
       file.xml.skip(*keys[k]);
       file.ignored.add(*keys[k], "a <key> other than that of the start", "is not read");
       continue;
     }
-    for (const char* attribute : {"mpos", "mquat", "act"})
+    for (const char* attribute : {"mpos", "mquat"})
       if (file.xml.text(*chosen, attribute))
         file.ignored.add(*chosen, format("'{}' of <key>", attribute),
-                         "moves nothing: mocap bodies are fixed, and there are no activations");
-    controls = KeyframeReader(file, *chosen, robot).read(actuators);
+                         "moves nothing: mocap bodies are fixed");
+    controls = KeyframeReader(file, *chosen, robot).read(active);
     file.notes.push_back({ImportNote::Kind::approximated, file.xml.place(*chosen),
                           format("the model starts at the keyframe {}; MuJoCo starts at its "
                                  "reference configuration by default",

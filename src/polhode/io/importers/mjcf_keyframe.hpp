@@ -7,11 +7,15 @@
 
 namespace polhode::io {
 
+/// Controls of actuators and, of those that have one, their activations at the start.
+struct MjcfControls {
+  std::vector<double> controls, activations;  ///< By actuator; empty: zero.
+};
+
 /// Gives the joints of a robot the start of a keyframe: the first one of the file, or the one that
 /// the options name.
-/// @param actuators  Number of actuators of the file.
-/// @returns the controls of the actuators; empty if the keyframe has none.
-std::vector<double> read_keyframe(MjcfFile& file, const ImportOptions& options,
-                                  std::size_t actuators, Robot& robot);
+/// @param active  Of each actuator of the file, whether it has an activation.
+[[nodiscard]] MjcfControls read_keyframe(MjcfFile& file, const ImportOptions& options,
+                                         const std::vector<bool>& active, Robot& robot);
 
 }  // namespace polhode::io

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/mjcf_tendons.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <polhode/core/format.hpp>
@@ -12,6 +14,14 @@ namespace polhode::io {
 namespace {
 
 using Element = XmlFile::Element;
+
+/// Part of the inertia of its joints that the slide of a fixed tendon has; the relative error of
+/// the motion is about as large.
+constexpr double kNoInertia = 1e-10;
+
+bool is_straight(const RobotCable& cable) {
+  return cable.through.size() == 2 && cable.around.empty();
+}
 
 }  // namespace
 
@@ -27,16 +37,9 @@ void MjcfTendons::read() {
       const std::string name = tag.text("name", "");
       const std::string_view kind = e->Name();
       file_.ignored.attributes(*e, {"group", "width", "material", "rgba", "user", "solreflimit",
-                                    "solimplimit", "solreffriction", "solimpfriction", "margin",
-                                    "actuatorfrcrange", "actuatorfrclimited"});
-      const bool limited = options_.limits && !tag.numbers("range", 2, 2).empty() &&
-                           tag.boolean("limited", file_.compiler.auto_limits);
-      const bool rubs = options_.friction && tag.number("frictionloss", 0.0) != 0.0;
-      if (limited || rubs)
-        refusals_.add(*e, format("the tendon {} has limits or friction", quote(name)),
-                      "Import without limits and friction.");
-      if (tag.number("armature", 0.0) != 0.0)
-        refusals_.add(*e, format("the tendon {} has an armature", quote(name)), "Leave it out.");
+                                    "solimplimit", "solreffriction", "solimpfriction", "margin"});
+      if (tag.has("actuatorfrcrange"))
+        file_.ignored.add(*e, "'actuatorfrcrange' of a tendon", "limits nothing");
       if (kind == "fixed")
         read_sum(tag, name);
       else if (kind == "spatial")
@@ -53,7 +56,7 @@ RobotCable* MjcfTendons::spatial(const std::string& name) {
 void MjcfTendons::finish() {
   std::vector<RobotCable> kept;
   for (RobotCable& cable : robot_.cables)
-    if (cable.stiffness != 0.0 || cable.damping != 0.0 || cable.tension)
+    if (cable.stiffness != 0.0 || cable.damping != 0.0 || !cable.tension.empty())
       kept.push_back(std::move(cable));
     else
       file_.ignored.add(*cable.at, "a tendon without stiffness, damping and actuator",
@@ -101,32 +104,151 @@ void MjcfTendons::read_sum(const MjcfTag& tag, const std::string& name) {
     sum.emplace_back(joint_name, factor);
     at_rest += factor * rests_.at(joint_name);
   }
-  const double k = effort_of(tag, refusals_, "stiffness", name);
-  const double d = effort_of(tag, refusals_, "damping", name);
-  if (k == 0.0 && d == 0.0) return;
-  if (sum.size() != 1 || sum[0].second == 0.0) {
-    refusals_.add(tag.e,
-                  format("the fixed tendon {} of {} joints has a stiffness or damping", quote(name),
-                         sum.size()),
-                  "Give each joint a spring or damper, or one of them a coupling.");
+  sum_tags_[name] = &tag.e;
+  Law law = law_of(tag, name, at_rest);
+  const bool gap = law.stiffness != 0.0 && law.rest.lower != law.rest.upper;
+  if (law.stiffness == 0.0 && law.damping == 0.0 && law.friction == 0.0 && law.armature == 0.0 &&
+      !law.range)
+    return;
+  std::erase_if(sum, [](const auto& part) { return part.second == 0.0; });
+  if (sum.empty()) {
+    file_.ignored.add(tag.e, "a fixed tendon without joints", "exerts no force");
     return;
   }
-  const Rest rest = rest_of(tag, at_rest);
-  if (k != 0.0 && rest.lower != rest.upper) {
-    refusals_.add(tag.e, format("the fixed tendon {} is without force over a range", quote(name)),
-                  "Give one length.");
-    return;
+  const bool alone = sum.size() == 1 && !gap;
+  const std::string joint_name = alone ? sum[0].first : length_joint(name);
+  if (!alone) {
+    for (RobotLink& link : robot_.links)
+      if (link.name == joint_name) link.mass.mass += law.armature;
+    law.armature = 0.0;
   }
-  // The spring of the joint and this one act along the same coordinate.
-  const double factor = sum[0].second, own = k * factor * factor;
-  for (RobotJoint& joint : robot_.joints) {
-    if (joint.name != sum[0].first) continue;
-    joint.damping += d * factor * factor;
-    if (own == 0.0) continue;
+  for (RobotJoint& joint : robot_.joints)
+    if (joint.name == joint_name) put_law(law, alone ? sum[0].second : 1.0, joint);
+}
+
+MjcfTendons::Law MjcfTendons::law_of(const MjcfTag& tag, const std::string& name,
+                                     double length_at_rest) {
+  Law law;
+  law.stiffness = effort_of(tag, refusals_, "stiffness", name);
+  law.damping = effort_of(tag, refusals_, "damping", name);
+  if (options_.friction) law.friction = effort_of(tag, refusals_, "frictionloss", name);
+  law.armature = effort_of(tag, refusals_, "armature", name);
+  if (law.stiffness != 0.0) law.rest = rest_of(tag, length_at_rest);
+  law.range = range_of(tag, name);
+  return law;
+}
+
+std::optional<MjcfTendons::Rest> MjcfTendons::range_of(const MjcfTag& tag,
+                                                       const std::string& name) {
+  const std::vector<double> range = tag.numbers("range", 2, 2);
+  if (!options_.limits || range.empty() || !tag.boolean("limited", file_.compiler.auto_limits))
+    return std::nullopt;
+  if (range[0] < range[1]) return Rest{range[0], range[1]};
+  file_.xml.fault(tag.e,
+                  format("the tendon {} has the limits {} to {}", quote(name), range[0], range[1]),
+                  "Give a lower limit below the upper one.");
+  return std::nullopt;
+}
+
+/// Limits of the distance of the two sites of a tendon.
+void MjcfTendons::add_link(const RobotCable& cable, const Rest& range) {
+  RobotLoop link;
+  link.name = cable.name + "_limits";
+  link.type = "slack_link";
+  link.at = cable.at;
+  for (std::size_t k = 0; k < 2; ++k) {
+    link.links[k] = cable.through[k].link;
+    link.frames[k].p = cable.through[k].p;
+  }
+  if (range.lower > 0.0) link.lower = range.lower;
+  link.upper = range.upper;
+  robot_.loops.push_back(std::move(link));
+}
+
+void MjcfTendons::put_law(const Law& law, double factor, RobotJoint& joint) const {
+  const double squared = factor * factor, own = law.stiffness * squared;
+  joint.damping += law.damping * squared;
+  joint.friction += law.friction * std::abs(factor);
+  joint.armature += law.armature * squared;
+  if (law.rest.lower != law.rest.upper) joint.rest_upper = law.rest.upper;
+  if (own != 0.0) {
+    // The spring of the joint and this one act along the same coordinate.
     joint.rest =
-        (joint.stiffness * joint.rest + own * rest.lower / factor) / (joint.stiffness + own);
+        (joint.stiffness * joint.rest + own * law.rest.lower / factor) / (joint.stiffness + own);
     joint.stiffness += own;
   }
+  if (!law.range) return;
+  double low = law.range->lower / factor, high = law.range->upper / factor;
+  if (factor < 0.0) std::swap(low, high);
+  joint.lower = std::max(low, joint.lower.value_or(low));
+  joint.upper = std::min(high, joint.upper.value_or(high));
+}
+
+const MjcfInertia& MjcfTendons::inertia() {
+  if (!inertia_) inertia_.emplace(robot_, bodies_.frames());
+  return *inertia_;
+}
+
+double MjcfTendons::inertia_of(const std::string& name) {
+  const MjcfInertia& inertia = this->inertia();
+  if (!inertia.is_there()) return 0.0;
+  std::vector<std::pair<std::size_t, double>> sum;
+  for (const auto& [joint, factor] : sums_.at(name))
+    for (std::size_t j = 0; j < robot_.joints.size(); ++j)
+      if (robot_.joints[j].name == joint) sum.emplace_back(j, factor);
+  return inertia.effective(sum);
+}
+
+const std::string& MjcfTendons::length_joint(const std::string& name) {
+  const auto [found, is_new] = length_joints_.try_emplace(name);
+  std::string& joint_name = found->second;
+  if (!is_new) return joint_name;
+  const Element& at = *sum_tags_.at(name);
+  std::set<std::string> taken;
+  for (const RobotJoint& joint : robot_.joints) taken.insert(joint.name);
+  for (const RobotLink& link : robot_.links) taken.insert(link.name);
+  joint_name = (name.empty() ? std::string("tendon") : name) + "_length";
+  while (taken.contains(joint_name)) joint_name += "_2";
+  // What moves with the tendon besides its joints: almost nothing, across gravity.
+  double mass = inertia_of(name);
+  if (!(mass > 0.0))
+    for (const RobotLink& link : robot_.links) mass += link.mass.mass;
+  RobotLink link;
+  link.name = joint_name;
+  link.at = &at;
+  link.has_inertial = true;
+  link.name_in_file = false;
+  link.mass = {kNoInertia * mass, Vec3::Zero(), kNoInertia * mass * Mat3::Identity()};
+  RobotJoint joint;
+  joint.name = joint_name;
+  joint.type = "prismatic";
+  joint.parent = robot_.links.front().name;
+  joint.child = joint_name;
+  joint.at = &at;
+  joint.axis = axes_along(robot_.gravity.isZero(0.0) ? Vec3(Vec3::UnitZ())
+                                                     : Vec3(robot_.gravity.normalized()))
+                   .col(0);
+  joint.in_loop = true;
+  RobotRow row;
+  row.name = joint_name + "_sum";
+  row.at = &at;
+  row.defines_first = true;
+  row.joints.push_back(joint_name);
+  row.factors.push_back(1.0);
+  for (const auto& [part, factor] : sums_.at(name)) {
+    if (factor == 0.0) continue;
+    row.joints.push_back(part);
+    row.factors.push_back(-factor);
+  }
+  robot_.links.push_back(std::move(link));
+  robot_.joints.push_back(std::move(joint));
+  robot_.rows.push_back(std::move(row));
+  file_.notes.push_back(
+      {ImportNote::Kind::approximated, file_.xml.place(at),
+       format("the length of the tendon {} is the displacement of {}, which has {} of the inertia "
+              "of its joints",
+              quote(name), quote(joint_name), kNoInertia)});
+  return joint_name;
 }
 
 void MjcfTendons::read_spatial(const MjcfTag& tag, const std::string& name) {
@@ -135,12 +257,23 @@ void MjcfTendons::read_spatial(const MjcfTag& tag, const std::string& name) {
   cable.name = name.empty() ? format("tendon_{}", robot_.cables.size() + 1) : name;
   cable.stiffness = effort_of(tag, refusals_, "stiffness", cable.name);
   cable.damping = effort_of(tag, refusals_, "damping", cable.name);
+  const auto refuse_property = [&](bool is, const char* what, const char* hint) {
+    if (is) refusals_.add(tag.e, format("the tendon {} has {}", quote(cable.name), what), hint);
+  };
+  refuse_property(options_.friction && tag.number("frictionloss", 0.0) != 0.0, "friction of a line",
+                  "Import without friction.");
+  refuse_property(tag.number("armature", 0.0) != 0.0, "an armature", "Leave it out.");
   if (!read_path(tag.e, cable)) return;
+  if (const std::optional<Rest> range = range_of(tag, cable.name); range) {
+    refuse_property(!is_straight(cable), "limits of a length over several points",
+                    "Import without limits.");
+    if (is_straight(cable)) add_link(cable, *range);
+  }
   if (cable.stiffness != 0.0) {
     const Rest rest = rest_of(tag, length_at_rest(cable));
     cable.shortest = rest.lower;
     cable.longest = rest.upper;
-    const bool plain = cable.through.size() == 2 && cable.around.empty();
+    const bool plain = is_straight(cable);
     const auto refuse = [&](const std::string& what, const char* hint) {
       refusals_.add(tag.e, format("the tendon {} {}", quote(cable.name), what), hint);
       cable.stiffness = 0.0;

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <polhode/io/importers/mjcf_bodies.hpp>
+#include <polhode/io/importers/mjcf_inertia.hpp>
 
 namespace polhode::io {
 
@@ -26,6 +29,12 @@ class MjcfTendons {
   [[nodiscard]] const Sums& sums() const { return sums_; }
   /// A spatial tendon that is read; null if there is none of the name.
   RobotCable* spatial(const std::string& name);
+  /// Joint whose coordinate is the sum of a fixed tendon: that of a slide that is made for it.
+  const std::string& length_joint(const std::string& name);
+  /// Inertia of the joints and links of the file.
+  [[nodiscard]] const MjcfInertia& inertia();
+  /// Inertia that moves with a fixed tendon while all else is free; zero if it has none.
+  [[nodiscard]] double inertia_of(const std::string& name);
   /// Says which tendons exert no force, and removes them. To be called when all is read.
   void finish();
 
@@ -39,6 +48,18 @@ class MjcfTendons {
   bool read_path(const Element& e, RobotCable& cable);
   bool add_obstacle(const Element& e, RobotCable& cable);
   void read_sum(const MjcfTag& tag, const std::string& name);
+  /// Properties of a fixed tendon as those of its length's joint.
+  struct Law {
+    double stiffness = 0.0, damping = 0.0, friction = 0.0, armature = 0.0;
+    Rest rest{0.0, 0.0};
+    std::optional<Rest> range;
+  };
+  [[nodiscard]] Law law_of(const MjcfTag& tag, const std::string& name, double length_at_rest);
+  /// Adds them to the joint of a tendon that has only one.
+  void put_law(const Law& law, double factor, RobotJoint& joint) const;
+  /// Limits of its length, if it has any.
+  [[nodiscard]] std::optional<Rest> range_of(const MjcfTag& tag, const std::string& name);
+  void add_link(const RobotCable& cable, const Rest& range);
   [[nodiscard]] Rest rest_of(const MjcfTag& tag, double length_at_rest);
   [[nodiscard]] double length_at_rest(const RobotCable& cable);
   /// Frame of each link where all joint springs are relaxed.
@@ -50,6 +71,9 @@ class MjcfTendons {
   const ImportOptions& options_;
   Robot& robot_;
   Sums sums_;
+  std::map<std::string, const Element*> sum_tags_;    ///< Tags of fixed tendons.
+  std::map<std::string, std::string> length_joints_;  ///< By fixed tendon.
+  std::optional<MjcfInertia> inertia_;
   std::map<std::string, std::size_t> spatial_;  ///< In the robot's cables.
   std::map<std::string, Pose> relaxed_;         ///< Frames of links.
   std::map<std::string, double> rests_;         ///< Coordinates of joints.

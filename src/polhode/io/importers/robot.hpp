@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <polhode/core/types.hpp>
 #include <polhode/geometry/mass_properties.hpp>
 #include <polhode/io/importers/import_model.hpp>
+#include <polhode/io/importers/robot_signal.hpp>
 #include <polhode/io/importers/xml_file.hpp>
 
 namespace polhode::io {
@@ -32,6 +36,10 @@ struct RobotShape {
   std::string file;                   ///< Of a mesh, as written.
   std::optional<std::string> folder;  ///< To which it is relative; left out: that of the robot.
   Vec3 scale = Vec3::Ones();          ///< Of a mesh.
+  std::string name;                   ///< In the file; "": none.
+  /// Two shapes touch if a bit of the first number of one is one of the second of the other.
+  std::pair<int, int> contact_bits{1, 1};
+  std::vector<int> contact_pairs;  ///< Numbers of pairs in which it touches.
 };
 
 struct RobotLink {
@@ -39,7 +47,7 @@ struct RobotLink {
   const XmlFile::Element* at = nullptr;
   bool has_inertial = false;
   bool name_in_file = true;       ///< Not one that stands between the joints of a body.
-  bool weightless = false;        ///< Whether gravity does not act on it.
+  double carried = 0.0;           ///< Part of its weight that a force holds.
   geometry::MassProperties mass;  ///< In the link's axes; zero if it has none.
   std::vector<RobotShape> visual, collision;
 };
@@ -73,8 +81,10 @@ struct RobotJoint {
   std::vector<double> rate;
   std::optional<double> lower, upper;
   double damping = 0.0, friction = 0.0, stiffness = 0.0;
-  double rest = 0.0;      ///< Coordinate without force of the spring [rad, m].
-  double armature = 0.0;  ///< Inertance [kg m², kg].
+  double rest = 0.0;                 ///< Coordinate without force of the spring [rad, m].
+  std::optional<double> rest_upper;  ///< The spring is without force from `rest` up to here.
+  double armature = 0.0;             ///< Inertance [kg m², kg].
+  std::optional<double> least_effort, most_effort;  ///< Of all its actuators [N m, N].
   std::optional<RobotMimic> mimic;
 
   /// Whether its coordinate is an angle.
@@ -85,13 +95,14 @@ struct RobotJoint {
   [[nodiscard]] bool is_single() const { return turns() || type == "prismatic"; }
 };
 
-/// A joint between links that closes a loop: <loop_joint>, <loop>.
+/// A joint between links that closes a loop: <loop_joint>, <loop>; or a bound of a distance.
 struct RobotLoop {
   std::string name, type;
   const XmlFile::Element* at = nullptr;
   std::string links[2];
   Pose frames[2];  ///< In the links' coordinates.
   Vec3 axis = Vec3::UnitX();
+  std::optional<double> lower, upper;  ///< Of the distance of a slack_link [m].
 };
 
 /// A row between coordinates: the sum of factors times coordinates is constant.
@@ -101,6 +112,8 @@ struct RobotRow {
   std::vector<std::string> joints;
   std::vector<double> factors;  ///< Of each; the first one is not zero.
   double sum = 0.0;             ///< [rad, m]
+  /// Whether the first coordinate is defined by the others: its start follows from theirs.
+  bool defines_first = false;
 };
 
 /// A motor or servo of a joint with one coordinate.
@@ -114,14 +127,41 @@ struct RobotActuator {
   const XmlFile::Element* at = nullptr;
   Kind kind = Kind::effort;
   double stiffness = 0.0, damping = 0.0;  ///< Of a servo.
-  double target = 0.0;                    ///< Effort, coordinate or rate.
-  std::optional<double> most;             ///< Largest effort of a servo [N m, N].
+  RobotSignal target;                     ///< Effort, coordinate or rate.
+  /// Bounds of the effort [N m, N].
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+
+  /// Adds bounds, in either order.
+  void bound(double one, double other) {
+    least = std::clamp(least, std::min(one, other), std::max(one, other));
+    most = std::clamp(most, std::min(one, other), std::max(one, other));
+  }
 };
 
 /// A point of a link, or an obstacle on it.
 struct RobotPoint {
   std::string link;
   Vec3 p = Vec3::Zero();  ///< In the link's coordinates [m].
+};
+
+/// A force and a moment at a point of a link.
+struct RobotPush {
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  RobotPoint point;
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< Per value of the signal.
+  bool in_world = false;  ///< Their axes are those of the world, otherwise those of the link.
+  RobotSignal signal;
+};
+
+/// Resistance of a medium to a link, along and about axes at a point.
+struct RobotDrag {
+  const XmlFile::Element* at = nullptr;
+  std::string link;
+  Pose frame;                                                     ///< In the link's coordinates.
+  Vec3 linear = Vec3::Zero(), quadratic = Vec3::Zero();           ///< [N s/m], [N s²/m²]
+  Vec3 turning = Vec3::Zero(), quadratic_turning = Vec3::Zero();  ///< [N m s], [N m s²]
 };
 
 /// A line over points of links, around obstacles, with one tension.
@@ -141,7 +181,28 @@ struct RobotCable {
   std::vector<Obstacle> around;
   double stiffness = 0.0, damping = 0.0;  ///< [N/m, N s/m]
   double shortest = 0.0, longest = 0.0;   ///< Lengths between which there is no force [m].
-  std::optional<double> tension;          ///< Of actuators [N].
+  std::vector<RobotSignal> tension;       ///< Of actuators [N]: their sum.
+};
+
+/// Two links whose shapes do not touch.
+struct RobotExclusion {
+  const XmlFile::Element* at = nullptr;
+  std::string links[2];
+};
+
+/// Two links with properties of contact of their own.
+struct RobotContactPair {
+  std::string name;
+  const XmlFile::Element* at = nullptr;
+  std::string links[2];
+  double friction = 0.0, torsion = 0.0, rolling = 0.0;  ///< Coefficient; lengths [m].
+};
+
+/// What touches, in a model with contacts.
+struct RobotContacts {
+  bool wanted = false;
+  std::vector<RobotExclusion> exclusions;
+  std::vector<RobotContactPair> pairs;
 };
 
 /// Something to be recorded.
@@ -164,6 +225,9 @@ struct Robot {
   Vec3 gravity{0.0, 0.0, -9.81};    ///< [m/s²]
   std::vector<RobotRow> rows;
   std::vector<RobotActuator> actuators;
+  RobotContacts contacts;
+  std::vector<RobotPush> pushes;
+  std::vector<RobotDrag> drags;
   std::vector<RobotCable> cables;
   std::vector<RobotProbe> probes;
   std::vector<RobotLink> links;

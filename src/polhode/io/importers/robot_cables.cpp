@@ -80,9 +80,9 @@ void CableWriter::write_springs(const RobotCable& cable, SourceNode& loads) {
     make.put(push, "free_length", make.number(cable.shortest));
     make.put(push, "acts", make.text("compression"));
   }
-  if (cable.tension)
+  if (!cable.tension.empty())
     make.put(add("axial_force", cable.stiffness != 0.0 || cable.damping != 0.0 ? "_pull" : ""),
-             "pull", make.number(*cable.tension));
+             "pull", signal_node(make, cable.tension));
 }
 
 void CableWriter::write_line(const RobotCable& cable, SourceNode& cables) {
@@ -100,8 +100,8 @@ void CableWriter::write_line(const RobotCable& cable, SourceNode& cables) {
     make.put(line, "free_length", make.number(cable.longest));
   }
   if (cable.damping != 0.0) make.put(line, "damping", make.number(cable.damping));
-  if (cable.tension || cable.stiffness == 0.0)
-    make.put(line, "tension", make.number(cable.tension.value_or(0.0)));
+  if (!cable.tension.empty() || cable.stiffness == 0.0)
+    make.put(line, "tension", signal_node(make, cable.tension));
   SourceNode around = make.map();
   for (const RobotCable::Obstacle& o : cable.around) {
     const Mat3 R = tree_.in_body(link(o.at.link)).R;
@@ -121,6 +121,77 @@ void CableWriter::write_line(const RobotCable& cable, SourceNode& cables) {
   make.put(cables, name, std::move(line));
 }
 
+void CableWriter::write_pushes(SourceNode& loads) {
+  for (const RobotPush& push : robot_.pushes) {
+    if (tree_.grounded[static_cast<std::size_t>(link(push.point.link))]) {
+      notes_.push_back({ImportNote::Kind::ignored, xml_.place(*push.at),
+                        format("the actuator {} acts on no body that moves", quote(push.name))});
+      continue;
+    }
+    const NodeBuilder make{xml_.line(*push.at)};
+    const Mat3 R = push.in_world ? Mat3::Identity() : tree_.in_body(link(push.point.link)).R;
+    const bool both = !push.force.isZero(0.0) && !push.moment.isZero(0.0);
+    const auto add = [&](const char* type, const Vec3& vector, const char* ending) {
+      if (vector.isZero(0.0)) return;
+      const Vec3 turned = R * vector;
+      SourceNode load = make.map();
+      make.put(load, "type", make.text(type));
+      make.put(load, "body", make.text(body(push.point.link)));
+      if (std::string_view(type) == "force")
+        make.put(load, "at_body", make.vector(place(push.point)));
+      std::vector<SourceNode> components;
+      for (int k = 0; k < 3; ++k)
+        components.push_back(signal_node(make, {push.signal.times(turned[k])}));
+      make.put(load, type, make.list(std::move(components)));
+      if (!push.in_world) make.put(load, "body_fixed", make.boolean(true));
+      const std::string name = free_name(loads, push.name + ending);
+      written_.try_emplace(push.name, "load", name);
+      make.put(loads, name, std::move(load));
+    };
+    add("force", push.force, "");
+    add("moment", push.moment, both ? "_moment" : "");
+  }
+}
+
+void CableWriter::write_weights(SourceNode& loads) {
+  for (std::size_t i = 0; i < robot_.links.size(); ++i) {
+    const RobotLink& link = robot_.links[i];
+    const Vec3 force = -link.carried * link.mass.mass * robot_.gravity;
+    if (tree_.grounded[i] || force.isZero(0.0)) continue;
+    const NodeBuilder make{xml_.line(*link.at)};
+    SourceNode load = make.map();
+    make.put(load, "type", make.text("force"));
+    make.put(load, "body", make.text(body(link.name)));
+    make.put(load, "at_body", make.vector(place({link.name, link.mass.com})));
+    make.put(load, "force", make.vector(force));
+    make.put(loads, free_name(loads, link_names_[i] + "_weightless"), std::move(load));
+  }
+}
+
+void CableWriter::write_drags(SourceNode& loads) {
+  for (const RobotDrag& drag : robot_.drags) {
+    const auto own = static_cast<std::size_t>(link(drag.link));
+    if (tree_.grounded[own]) continue;
+    const NodeBuilder make{xml_.line(*drag.at)};
+    const Pose frame = tree_.world[own] * drag.frame;
+    SourceNode load = make.map();
+    make.put(load, "type", make.text("axis_drag"));
+    make.put(load, "bodies", make.list({make.text("ground"), make.text(body(drag.link))}));
+    make.put(load, "at_body",
+             make.list({make.vector(frame.p), make.vector(place({drag.link, drag.frame.p}))}));
+    make.put(load, "axis", make.direction(frame.R.col(2)));
+    make.put(load, "x_axis", make.direction(frame.R.col(0)));
+    const auto put = [&](const char* key, const Vec3& values) {
+      if (!values.isZero(0.0)) make.put(load, key, make.vector(values));
+    };
+    put("linear", drag.linear);
+    put("quadratic", drag.quadratic);
+    put("turning", drag.turning);
+    put("quadratic_turning", drag.quadratic_turning);
+    make.put(loads, free_name(loads, link_names_[own] + "_medium"), std::move(load));
+  }
+}
+
 void CableWriter::write_probes(const Names& names, const SourceNode& joints, SourceNode& probes) {
   for (const RobotProbe& p : robot_.probes) {
     const NodeBuilder make{xml_.line(*p.at)};
@@ -138,6 +209,8 @@ void CableWriter::write_probes(const Names& names, const SourceNode& joints, Sou
     } else if (p.kind == RobotProbe::Kind::load) {
       if (const auto found = names.actuators.find(p.of); found != names.actuators.end())
         make.put(probe, "load", make.text(found->second));
+      else if (const auto other = written_.find(p.of); other != written_.end())
+        make.put(probe, other->second.first, make.text(other->second.second));
     } else if (const auto found = written_.find(p.of); found != written_.end()) {
       make.put(probe, found->second.first, make.text(found->second.second));
     }

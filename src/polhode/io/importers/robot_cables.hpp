@@ -21,6 +21,12 @@ class CableWriter {
   /// Adds a line between two points to the loads, as springs, dampers and pulls, others to the
   /// cables.
   void write(SourceNode& cables, SourceNode& loads);
+  /// Adds forces and moments at points of links to the loads.
+  void write_pushes(SourceNode& loads);
+  /// Adds forces that hold the weight of links, or part of it.
+  void write_weights(SourceNode& loads);
+  /// Adds the resistance of a medium to the loads.
+  void write_drags(SourceNode& loads);
 
   /// Names of joints and of actuators in the model, by those in the file.
   struct Names {

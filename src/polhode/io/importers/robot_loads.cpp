@@ -15,14 +15,24 @@ void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std
     make.put(load, "joint", make.text(name));
     return load;
   };
+  const auto put_rest = [&](SourceNode& spring, double rest) {
+    make.put(spring, "stiffness", make.number(joint.stiffness));
+    make.put(spring, angle ? "free_angle" : "free_displacement", make.number(rest - turns));
+  };
+  const char* const kind = angle ? "torsional_spring" : "translational_spring";
+  const bool gap = joint.stiffness != 0.0 && joint.rest_upper && *joint.rest_upper > joint.rest;
   if (joint.stiffness != 0.0 || joint.damping != 0.0) {
-    SourceNode spring = load_on_joint(angle ? "torsional_spring" : "translational_spring");
-    if (joint.stiffness != 0.0) {
-      make.put(spring, "stiffness", make.number(joint.stiffness));
-      make.put(spring, angle ? "free_angle" : "free_displacement", make.number(joint.rest - turns));
-    }
+    SourceNode spring = load_on_joint(kind);
+    if (joint.stiffness != 0.0) put_rest(spring, gap ? *joint.rest_upper : joint.rest);
+    if (gap) make.put(spring, "acts", make.text("tension"));
     if (joint.damping != 0.0) make.put(spring, "damping", make.number(joint.damping));
     make.put(loads, name + (joint.stiffness != 0.0 ? "_spring" : "_damping"), std::move(spring));
+  }
+  if (gap) {
+    SourceNode push = load_on_joint(kind);
+    put_rest(push, joint.rest);
+    make.put(push, "acts", make.text("compression"));
+    make.put(loads, name + "_push", std::move(push));
   }
   if (joint.armature == 0.0) return;
   SourceNode inerter = load_on_joint(angle ? "rotary_inerter" : "linear_inerter");
@@ -67,6 +77,17 @@ void put_free_damping(const NodeBuilder& make, const RobotJoint& joint, const st
   make.put(loads, name + "_damping", std::move(damper));
 }
 
+std::optional<double> centre_bounds(RobotActuator& servo) {
+  const double middle = 0.5 * (servo.least + servo.most);
+  if (servo.kind == RobotActuator::Kind::effort || !std::isfinite(middle) || middle == 0.0)
+    return std::nullopt;
+  servo.least -= middle;
+  servo.most -= middle;
+  const double gain = servo.kind == RobotActuator::Kind::place ? servo.stiffness : servo.damping;
+  servo.target = servo.target.plus(-middle / gain);
+  return middle;
+}
+
 SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
                          const RobotJoint& joint, const std::string& name, double turns) {
   const bool angle = joint.turns(), servo = actuator.kind != RobotActuator::Kind::effort;
@@ -76,16 +97,18 @@ SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
                      : angle ? "rotary_motor"
                              : "linear_motor"));
   make.put(load, "joint", make.text(name));
-  const char* target = actuator.kind == RobotActuator::Kind::velocity ? "speed"
-                       : servo ? angle ? "angle" : "displacement"
-                       : angle ? "moment"
-                               : "force";
+  const RobotSignal target =
+      servo ? actuator.target : actuator.target.within(actuator.least, actuator.most);
+  const char* key = actuator.kind == RobotActuator::Kind::velocity ? "speed"
+                    : servo ? angle ? "angle" : "displacement"
+                    : angle ? "moment"
+                            : "force";
   const bool place = actuator.kind == RobotActuator::Kind::place;
-  make.put(load, target, make.number(actuator.target - (place ? turns : 0.0)));
+  make.put(load, key, signal_node(make, {target.plus(place ? -turns : 0.0)}));
   if (actuator.stiffness != 0.0) make.put(load, "stiffness", make.number(actuator.stiffness));
   if (actuator.damping != 0.0) make.put(load, "damping", make.number(actuator.damping));
-  if (servo && actuator.most)
-    make.put(load, angle ? "max_moment" : "max_force", make.number(*actuator.most));
+  if (servo && std::isfinite(actuator.most))
+    make.put(load, angle ? "max_moment" : "max_force", make.number(actuator.most));
   return load;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <polhode/io/importers/node_builder.hpp>
@@ -28,6 +29,10 @@ void put_ball_loads(const NodeBuilder& make, const RobotJoint& joint, const std:
 void put_free_damping(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
                       const std::string& body, const Vec3& point, const Vec3& in_body,
                       SourceNode& loads);
+
+/// Makes the bounds of a servo's effort opposite, by a constant effort that acts beside it.
+/// @returns that effort, if it is not zero
+[[nodiscard]] std::optional<double> centre_bounds(RobotActuator& servo);
 
 /// The motor or servo of a joint with one coordinate.
 /// @param name   Of the joint in the model.

@@ -153,7 +153,13 @@ class Arranger {
         if (count == 1 && options_.limits && !joint.in_loop) clamp(joint, tree_.start[j][0]);
         continue;
       }
-      if (joint.closes)
+      const bool defined_by_others = std::any_of(
+          robot_.rows.begin(), robot_.rows.end(),
+          [&](const RobotRow& row) { return row.defines_first && row.joints[0] == joint.name; });
+      if (defined_by_others)
+        fault_start(joint.name, "is the length of a tendon, which follows from its joints",
+                    "Give the starts of those.");
+      else if (joint.closes)
         fault_start(joint.name, "closes a loop, so that its start follows from other joints",
                     "Give the starts of those.");
       else if (joint.mimic)
@@ -224,6 +230,18 @@ class Arranger {
         at(tree_.start, *j)[0] = m.multiplier * at(tree_.start, leader_of(*j))[0] + m.offset;
       }
     }
+    for (const RobotRow& row : robot_.rows)
+      if (row.defines_first)
+        at(tree_.start, tree_.joint_index.at(row.joints[0]))[0] =
+            defined(row, row.sum, [&](int j) { return at(tree_.start, j)[0]; });
+  }
+
+  /// First coordinate of a row, or its rate, by those of the others.
+  template <class Value>
+  double defined(const RobotRow& row, double sum, Value&& value_of) const {
+    for (std::size_t k = 1; k < row.joints.size(); ++k)
+      sum -= row.factors[k] * value_of(tree_.joint_index.at(row.joints[k]));
+    return sum / row.factors[0];
   }
 
   int leader_of(int j) {
@@ -281,6 +299,9 @@ class Arranger {
 
   /// Rate of a joint's coordinate at the start; of one that follows another one as that of it.
   double rate_of(int j) {
+    for (const RobotRow& row : robot_.rows)
+      if (row.defines_first && row.joints[0] == joint(j).name)
+        return defined(row, 0.0, [&](int k) { return rate_of(k); });
     double factor = 1.0;
     for (; joint(j).mimic; j = tree_.joint_index.at(joint(j).mimic->joint))
       factor *= joint(j).mimic->multiplier;

@@ -28,7 +28,7 @@ class SdfLinkReader {
     for (const char* tag : {"visual", "collision"})
       for (const Element* shape : xml_.children(e, tag)) read_shape(*shape);
     read_inertial(xml_.child(e, "inertial"));
-    link_.weightless = !file_.boolean(e, "gravity", true);
+    link_.carried = file_.boolean(e, "gravity", true) ? 0.0 : 1.0;
     if (file_.boolean(e, "kinematic", false) && !from_.is_static)
       file_.refuse(e, format("the link {} is kinematic", quote(link_.name)),
                    "Make its model static, or prescribe its motion by a joint.");

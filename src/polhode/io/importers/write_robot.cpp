@@ -5,12 +5,14 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/importers/node_builder.hpp>
 #include <polhode/io/importers/robot_cables.hpp>
+#include <polhode/io/importers/robot_contacts.hpp>
 #include <polhode/io/importers/robot_loads.hpp>
 #include <polhode/io/importers/robot_meshes.hpp>
 #include <polhode/io/importers/robot_tree.hpp>
@@ -43,6 +45,7 @@ class ModelWriter {
   void write() {
     const NodeBuilder make{xml_.line(xml_.root())};
     name_all();
+    contacts_.emplace(robot_, tree_, link_name_, xml_, out_.notes);
     SourceNode bodies = make.map(), joints = make.map(), loads = make.map();
     for (const int i : tree_.order)
       if (at(tree_.body, i) == i) write_body(i, bodies);
@@ -54,12 +57,13 @@ class ModelWriter {
     for (std::size_t j = 0; j < robot_.joints.size(); ++j)
       if (robot_.joints[j].mimic) write_mimic(static_cast<int>(j), loads);
     for (const RobotRow& row : robot_.rows) write_row(row, loads);
-    for (std::size_t i = 0; i < robot_.links.size(); ++i)
-      if (robot_.links[i].weightless) write_weight(static_cast<int>(i), loads);
     if (options_.actuators) write_actuators(loads);
     CableWriter lines(robot_, tree_, link_name_, xml_, out_.notes);
     SourceNode cables = make.map();
     lines.write(cables, loads);
+    if (options_.actuators) lines.write_pushes(loads);
+    lines.write_weights(loads);
+    lines.write_drags(loads);
     SourceNode probes = make.map();
     lines.write_probes({joint_name_, actuator_name_}, joints, probes);
     out_.root = make.map();
@@ -71,6 +75,10 @@ class ModelWriter {
     }
     make.put(out_.root, "gravity", make.vector(robot_.gravity));
     make.put(out_.root, "bodies", std::move(bodies));
+    if (robot_.contacts.wanted)
+      if (SourceNode contacts = contacts_->section(*out_.root.find("bodies"));
+          !contacts.keys.empty())
+        make.put(out_.root, "contacts", std::move(contacts));
     if (!joints.keys.empty()) make.put(out_.root, "joints", std::move(joints));
     if (!loads.keys.empty()) make.put(out_.root, "loads", std::move(loads));
     if (!cables.keys.empty()) make.put(out_.root, "cables", std::move(cables));
@@ -176,6 +184,7 @@ class ModelWriter {
       if (!pose.p.isZero(0.0)) make.put(node, "position", make.vector(pose.p));
       if (!pose.R.isIdentity(0.0) && !plane)
         make.put(node, "orientation", make.orientation(Quat(pose.R).normalized()));
+      contacts_->put_shape(shape, make, node);
       shapes.children.push_back(std::move(node));
     }
   }
@@ -246,22 +255,6 @@ class ModelWriter {
     make.put(joints, name, std::move(node));
   }
 
-  /// A force that holds the weight of a link on which gravity does not act.
-  void write_weight(int i, SourceNode& loads) {
-    const RobotLink& link = at(robot_.links, i);
-    const Vec3 force = -link.mass.mass * robot_.gravity;
-    if (at(tree_.grounded, i) || force.isZero(0.0)) return;
-    const NodeBuilder make{xml_.line(*link.at)};
-    SourceNode load = make.map();
-    make.put(load, "type", make.text("force"));
-    make.put(load, "body", make.text(at(link_name_, at(tree_.body, i))));
-    make.put(load, "at_body", make.vector(in_body(i) * link.mass.com));
-    make.put(load, "force", make.vector(force));
-    std::string name = at(link_name_, i) + "_weightless";
-    while (loads.find(name) != nullptr) name += "_2";
-    make.put(loads, name, std::move(load));
-  }
-
   /// Frame of a joint on its child, displaced so that the coordinate is that of the joint.
   static Pose at_zero(const RobotJoint& joint) {
     Pose frame = joint.on_child;
@@ -323,8 +316,22 @@ class ModelWriter {
     const std::string type = loop.type == "continuous" ? "revolute" : loop.type;
     make.put(node, "type", make.text(type));
     make.put(node, "bodies", bodies_of(make, links[0], links[1]));
+    const bool link = type == "slack_link";
     put_frames(make, node, in_body(links[0]) * loop.frames[0], in_body(links[1]) * loop.frames[1],
-               loop.axis, type != "fixed" && type != "spherical", false);
+               loop.axis, type != "fixed" && type != "spherical" && !link, false);
+    if (link) {
+      const double start = (at(tree_.world, links[0]) * loop.frames[0].p -
+                            at(tree_.world, links[1]) * loop.frames[1].p)
+                               .norm();
+      if (start < loop.lower.value_or(start) || start > loop.upper.value_or(start))
+        return note(Kind::approximated, *loop.at,
+                    format("there is no {}, as the length is {:.6g} at the start, outside of it",
+                           quote(loop.name), start));
+      SourceNode limits = make.map();
+      if (loop.lower) make.put(limits, "lower", make.number(*loop.lower));
+      if (loop.upper) make.put(limits, "upper", make.number(*loop.upper));
+      make.put(node, "limits", std::move(limits));
+    }
     make.put(joints, joint_name_.at(loop.name), std::move(node));
   }
 
@@ -379,15 +386,30 @@ class ModelWriter {
              format("the actuator {} acts on no joint that moves", quote(actuator.name)));
         continue;
       }
-      const NodeBuilder make{xml_.line(*actuator.at)};
-      std::string name = allowed_name(actuator.name);
-      while (loads.find(name) != nullptr) name += "_actuator";
       const RobotJoint& joint = at(robot_.joints, found->second);
-      actuator_name_[actuator.name] = name;
-      make.put(loads, name,
-               actuator_load(make, actuator, joint, joint_name_.at(actuator.joint),
-                             turns_at_start(joint, at(tree_.start, found->second)[0])));
+      const double turns = turns_at_start(joint, at(tree_.start, found->second)[0]);
+      RobotActuator own = actuator;
+      const std::optional<double> beside = centre_bounds(own);
+      if (own.most > own.least || !beside)
+        actuator_name_[actuator.name] = put_actuator(own, joint, turns, loads);
+      if (!beside) continue;
+      RobotActuator constant;
+      constant.at = own.at;
+      constant.joint = own.joint;
+      constant.name = own.name + "_middle";
+      constant.target.constant = *beside;
+      put_actuator(constant, joint, turns, loads);
     }
+  }
+
+  std::string put_actuator(const RobotActuator& actuator, const RobotJoint& joint, double turns,
+                           SourceNode& loads) {
+    const NodeBuilder make{xml_.line(*actuator.at)};
+    std::string name = allowed_name(actuator.name);
+    while (loads.find(name) != nullptr) name += "_actuator";
+    make.put(loads, name,
+             actuator_load(make, actuator, joint, joint_name_.at(actuator.joint), turns));
+    return name;
   }
 
   /// Whether a joint moves in the model.
@@ -459,6 +481,7 @@ class ModelWriter {
   XmlFile& xml_;
   Imported& out_;
   RobotMeshes meshes_;
+  std::optional<ContactWriter> contacts_;
   std::vector<std::string> link_name_;
   std::map<std::string, std::string> joint_name_, actuator_name_;
   std::map<int, int> first_follower_;  ///< By leader that moves nothing.

@@ -130,7 +130,8 @@ ImportReport expand_import(SourceTree& tree, const std::string& folder,
   if (node == nullptr) return {};
   diagnostics.throw_if_any();
   ReadContext context{.tree = tree, .diagnostics = diagnostics};
-  const ImportOptions options = read_options(context, *node, folder);
+  ImportOptions options = read_options(context, *node, folder);
+  options.contacts = root.find("contacts") != nullptr;
   if (const SourceNode* units = root.find("units"))
     context.fault(*units, "units", "cannot be combined with an import, which is in SI",
                   "Leave it out, and write units after numbers.");

@@ -387,7 +387,7 @@ const FieldTable& shape_fields() {
 
 const FieldTable& mesh_fields() {
   static const FieldTable table{"mesh",
-                                "A closed surface of triangles in an STL or OBJ file.",
+                                "A closed surface of triangles in an STL or OBJ file, or an MSH of MuJoCo.",
                                 {
                                     {.name = "file",
                                      .kind = kText,
