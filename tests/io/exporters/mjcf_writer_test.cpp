@@ -55,6 +55,27 @@ loads:
     expect_same(model, read, step, 10 * kRounding, kGrown);
 }
 
+TEST_F(Exports, OfLinesBetweenPointsAsAnMjcfMoveAsTheModel) {
+  const Model model = model_of(std::string(kBodies) + R"(
+joints:
+  shoulder: {type: revolute, bodies: [post, arm], at: [0.2, 0.1, 0.3], axis: [1, -1, 2], start: 0.4}
+  rail: {type: prismatic, bodies: [second, arm], at: [0.7, 0.2, 0.1], axis: [1, 1, 0.3], start: -0.05}
+  ball: {type: spherical, bodies: [third, second], at: [1, 0.4, 0]}
+loads:
+  strut: {type: spring_damper, bodies: [ground, second], at: [[0, 1, 0], [0.9, 0.3, 0.2]], stiffness: 40, damping: 2}
+  rope: {type: spring_damper, bodies: [post, third], at: [[0, 0, 0], [1.1, 0.3, 0]], stiffness: 60, free_length: 1, acts: tension}
+  stop: {type: spring_damper, bodies: [arm, third], at: [[0.4, 0, 0], [1.1, 0.3, 0]], stiffness: 60, free_length: 0.9, acts: compression}
+  oil: {type: spring_damper, bodies: [ground, third], at: [[0, 0, 1], [1.1, 0.3, 0]], damping: 3}
+  winch: {type: axial_force, bodies: [ground, third], at: [[0, 0, 1], [1.1, 0.3, 0]], pull: 5, damping: 0.5}
+)");
+  const Model read = again(model, "robot.xml");
+  // The damper and the pull of the winch are two, and a stop is a spring without force over a
+  // range.
+  EXPECT_EQ(read.loads.size(), 7U);
+  for (const double step : {0.02, 0.005, 0.001})
+    expect_same(model, read, step, 10 * kRounding, kGrown);
+}
+
 // The keyframe of the file is the start where it is read again.
 TEST_F(Exports, KeepVelocitiesAndControls) {
   const Model model = model_of(std::string(kBodies) + R"(
@@ -189,10 +210,15 @@ joints:
               HasSubstr("loads.m: an MJCF has no motors that prescribe a motion"));
   EXPECT_THAT(fault(bars + "loads:\n  m: {type: rotary_motor, joint: A, moment: 2*t}\n", "a.xml"),
               HasSubstr("loads.m: its target or effort is a function"));
-  EXPECT_THAT(fault(bars + "loads:\n  m: {type: spring_damper, bodies: [a, b], at: [[0.5, 0, 0], "
-                           "[1.5, 0, 0]], stiffness: 3}\n",
-                    "a.xml"),
-              HasSubstr("loads.m: an MJCF has no load of the type spring_damper"));
+  const std::string line = "bodies: [a, b], at: [[0.5, 0, 0], [1.5, 0, 0]]";
+  EXPECT_THAT(fault(bars + "loads:\n  m: {type: potential, " + line + ", energy: l^2}\n", "a.xml"),
+              HasSubstr("loads.m: an MJCF has no load of the type potential"));
+  EXPECT_THAT(
+      fault(bars + "loads:\n  m: {type: spring_damper, " + line + ", quadratic: 3}\n", "a.xml"),
+      HasSubstr("loads.m: an MJCF has no springs and dampers with a law"));
+  EXPECT_THAT(
+      fault(bars + "loads:\n  m: {type: axial_force, " + line + ", pull: sin(t)}\n", "a.xml"),
+      HasSubstr("loads.m: its target or effort is a function"));
   EXPECT_THAT(
       fault(bars + "loads:\n  m: {type: rotary_servo, joint: A, angle: 1, integral: 2}\n", "a.xml"),
       HasSubstr("loads.m: an MJCF has no servos with an integral"));

@@ -41,6 +41,8 @@ class LoadSorter {
         put_coupling(load);
       else if (type == "screw")
         put_screw(load);
+      else if (can_.lines && (type == "spring_damper" || type == "axial_force"))
+        put_line(load);
       else if (type == "vector_damper")
         put_ball_damper(load);
       else
@@ -91,6 +93,20 @@ class LoadSorter {
     const double rest = parameter(load, q.turns ? "free_angle" : "free_displacement");
     q.rest = q.stiffness == 0.0 ? rest : (q.stiffness * q.rest + k * rest) / (q.stiffness + k);
     q.stiffness += k;
+  }
+
+  /// A straight line between points of two bodies.
+  void put_line(const LoadSpec& load) {
+    if (!load.laws.empty() || parameter(load, "quadratic") != 0.0)
+      return refuse(load, can_.name + " has no springs and dampers with a law",
+                    "Give a stiffness and a damping.");
+    for (const int body : {load.a, load.b})
+      if (body != kGround && tree_.at[static_cast<std::size_t>(body)] < 0) return;
+    const bool steady = load.of_motion.index() == 0 && (!load.value || load.value->is_constant());
+    if (!steady)
+      refuse(load, "its target or effort is a function, and the file has a number",
+             "Give a constant, and control it where the file is read.");
+    tree_.lines.push_back({load_, load.value ? (*load.value)(0.0) : 0.0});
   }
 
   void put_inerter(const LoadSpec& load) {

@@ -18,6 +18,7 @@ struct ExportAbilities {
   bool springs = false;             ///< Of joints, and inerters.
   bool motors = false;
   bool turning_damping = false;  ///< Of spherical joints.
+  bool lines = false;            ///< Springs, dampers and pulls between two points.
   std::string elsewhere;         ///< Hint for what it cannot represent.
 };
 
@@ -78,6 +79,12 @@ struct ExportMotor {
   double target = 0.0;  ///< At the start.
 };
 
+/// A spring, damper or pull between two points.
+struct ExportLine {
+  int load = 0;       ///< In Model::loads.
+  double pull = 0.0;  ///< Force that attracts the points [N].
+};
+
 /// A coordinate as a sum of others.
 struct ExportCoupling {
   int load = 0;  ///< In Model::loads.
@@ -93,6 +100,7 @@ struct ExportTree {
   std::vector<int> loops;  ///< Spherical and fixed joints of the model that close loops.
   std::vector<ExportMotor> motors;
   std::vector<ExportCoupling> couplings;
+  std::vector<ExportLine> lines;
 
   [[nodiscard]] ExportCoordinate& coordinate(const ExportPlace& p) {
     return bodies[static_cast<std::size_t>(p.body)]

@@ -55,8 +55,10 @@ class MjcfWriter {
     }
     write_meshes();
     find_sites();
+    find_ends();
     write_bodies();
     write_equalities();
+    write_lines();
     write_motors();
     write_start();
   }
@@ -104,6 +106,16 @@ class MjcfWriter {
                                  same ? joint.R_a : Mat3(joint.R_a * M)});
       sites_[joint.b].push_back(
           {joint.name + "_2", in_own_coordinates(model_, joint.b, joint.Z_b), joint.R_b});
+    }
+  }
+
+  void find_ends() {
+    for (const ExportLine& line : tree_.lines) {
+      const LoadSpec& load = model_.loads[static_cast<std::size_t>(line.load)];
+      sites_[load.a].push_back(
+          {load.name + "_1", in_own_coordinates(model_, load.a, load.Z_a), Mat3::Identity()});
+      sites_[load.b].push_back(
+          {load.name + "_2", in_own_coordinates(model_, load.b, load.Z_b), Mat3::Identity()});
     }
   }
 
@@ -231,8 +243,45 @@ class MjcfWriter {
     }
   }
 
+  /// Distance of the points of a load at the start [m].
+  [[nodiscard]] double distance(const LoadSpec& load) const {
+    const auto place = [&](int body, const Vec3& Z) -> Vec3 {
+      if (body == kGround) return Z;
+      const BodyMotion motion = simulation_.body(body);
+      return motion.r + motion.Lambda() * Z;
+    };
+    return (place(load.b, load.Z_b) - place(load.a, load.Z_a)).norm();
+  }
+
+  void write_lines() {
+    if (tree_.lines.empty()) return;
+    const XmlTag tendon(out_, "tendon");
+    for (const ExportLine& line : tree_.lines) {
+      const LoadSpec& load = model_.loads[static_cast<std::size_t>(line.load)];
+      const auto value = [&](const char* key, double standard) {
+        const auto found = load.parameters.find(key);
+        return found == load.parameters.end() ? standard : found->second;
+      };
+      XmlTag spatial(out_, "spatial");
+      spatial.put("name", load.name);
+      if (const double k = value("stiffness", 0.0); k != 0.0) {
+        const double rest = value("free_length", distance(load));
+        const auto acts = load.words.find("acts");
+        const std::string side = acts == load.words.end() ? "both" : acts->second;
+        spatial.put("stiffness", k)
+            .put("springlength", side == "tension"       ? numbers_text({0.0, rest})
+                                 : side == "compression" ? numbers_text({rest, kFarStop})
+                                                         : number_text(rest));
+      }
+      if (const double damping = value("damping", 0.0); damping != 0.0)
+        spatial.put("damping", damping);
+      for (const char* end : {"_1", "_2"}) XmlTag(out_, "site").put("site", load.name + end);
+    }
+  }
+
   void write_motors() {
-    if (tree_.motors.empty()) return;
+    const auto pulls = [](const ExportLine& line) { return line.pull != 0.0; };
+    if (tree_.motors.empty() && std::none_of(tree_.lines.begin(), tree_.lines.end(), pulls)) return;
     const XmlTag actuator(out_, "actuator");
     for (const ExportMotor& motor : tree_.motors) {
       const LoadSpec& load = model_.loads[static_cast<std::size_t>(motor.load)];
@@ -251,6 +300,13 @@ class MjcfWriter {
         notes_.add(Kind::elsewhere, "loads." + load.name,
                    format("its control is {:.12g}, as in the keyframe", motor.target));
     }
+    for (const ExportLine& line : tree_.lines)
+      if (pulls(line)) {
+        const std::string& name = model_.loads[static_cast<std::size_t>(line.load)].name;
+        XmlTag(out_, "motor").put("name", name + "_pull").put("tendon", name).put("gear", "-1");
+        notes_.add(Kind::elsewhere, "loads." + name,
+                   format("its control is {:.12g}, as in the keyframe", line.pull));
+      }
   }
 
   /// A keyframe with all coordinates, velocities and controls.
@@ -274,6 +330,8 @@ class MjcfWriter {
       }
     }
     for (const ExportMotor& motor : tree_.motors) add(control, number_text(motor.target));
+    for (const ExportLine& line : tree_.lines)
+      if (line.pull != 0.0) add(control, number_text(line.pull));
     if (position.empty()) return;
     const XmlTag keyframe(out_, "keyframe");
     XmlTag key(out_, "key");
@@ -302,6 +360,7 @@ Exported export_mjcf(const Simulation& simulation, const ExportOptions& options)
                             .springs = true,
                             .motors = true,
                             .turning_damping = true,
+                            .lines = true,
                             .elsewhere = "Use joints and loads that it has."};
   const ExportTree tree = export_tree(simulation, can, notes);
   std::string text = MjcfWriter(simulation, options, tree, notes).write();

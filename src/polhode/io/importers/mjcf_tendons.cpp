@@ -41,7 +41,7 @@ void MjcfTendons::read() {
       if (tag.has("actuatorfrcrange"))
         file_.ignored.add(*e, "'actuatorfrcrange' of a tendon", "limits nothing");
       if (kind == "fixed")
-        read_sum(tag, name);
+        read_sum(tag, name.empty() ? format("tendon_{}", sums_.size() + 1) : name);
       else if (kind == "spatial")
         read_spatial(tag, name);
       file_.xml.skip(*e);
@@ -207,7 +207,7 @@ const std::string& MjcfTendons::length_joint(const std::string& name) {
   std::set<std::string> taken;
   for (const RobotJoint& joint : robot_.joints) taken.insert(joint.name);
   for (const RobotLink& link : robot_.links) taken.insert(link.name);
-  joint_name = (name.empty() ? std::string("tendon") : name) + "_length";
+  joint_name = name + "_length";
   while (taken.contains(joint_name)) joint_name += "_2";
   // What moves with the tendon besides its joints: almost nothing, across gravity.
   double mass = inertia_of(name);
