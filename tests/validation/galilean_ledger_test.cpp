@@ -158,7 +158,8 @@ joints:
        "start_speed: 20}, other: {type: rotor, body: two, inertia: 0.1, speed: 20 + 30*t}}\n"},
       {"drag", ""},  // through a medium at rest
       {"axis_drag",
-       "loads: {it: {type: axis_drag, bodies: [stage, one], at: [0.4, 0.1, 1.2], linear: [3, 1, 2], "
+       "loads: {it: {type: axis_drag, bodies: [stage, one], at: [0.4, 0.1, 1.2], linear: [3, 1, "
+       "2], "
        "quadratic: [1, 2, 1], turning: [0.2, 0.1, 0.3], quadratic_turning: [0.1, 0.2, 0.1]}}\n"},
       {"torsional_spring", hinges + "loads: {it: {type: torsional_spring, "
                                     "joint: a, stiffness: 30, damping: 1}}\n"},

@@ -386,20 +386,21 @@ const FieldTable& shape_fields() {
 }
 
 const FieldTable& mesh_fields() {
-  static const FieldTable table{"mesh",
-                                "A closed surface of triangles in an STL or OBJ file, or an MSH of MuJoCo.",
-                                {
-                                    {.name = "file",
-                                     .kind = kText,
-                                     .meaning = "Path, relative to the model file's folder.",
-                                     .required = true},
-                                    {.name = "scale",
-                                     .kind = kNumber,
-                                     .dimension = kLength,
-                                     .meaning = "Length of one unit of the file.",
-                                     .standard = "1",
-                                     .range = kPositive},
-                                }};
+  static const FieldTable table{
+      "mesh",
+      "A closed surface of triangles in an STL or OBJ file, or an MSH of MuJoCo.",
+      {
+          {.name = "file",
+           .kind = kText,
+           .meaning = "Path, relative to the model file's folder.",
+           .required = true},
+          {.name = "scale",
+           .kind = kNumber,
+           .dimension = kLength,
+           .meaning = "Length of one unit of the file.",
+           .standard = "1",
+           .range = kPositive},
+      }};
   return table;
 }
 
