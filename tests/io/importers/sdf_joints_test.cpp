@@ -220,6 +220,30 @@ TEST_F(SdfJoints, LinksWithoutGravityStayWhereTheyAre) {
   }
 }
 
+// A universal joint between the world and the last of three bars, whose axes are perpendicular:
+// with a damping, however small, it is two hinges and a link between them, and moves the same.
+TEST_F(SdfJoints, PairsOfHingesCloseLoops) {
+  const auto bar = [](const std::string& name, const std::string& at) {
+    return link(name, pose(at + " 0 0 0"),
+                "<inertial><pose>0.25 0 0 0 0 0</pose><mass>2</mass><inertia><ixx>0.1</ixx>"
+                "<iyy>0.2</iyy><izz>0.2</izz></inertia></inertial>");
+  };
+  const auto chain = [&](const std::string& dynamics) {
+    return read(bar("a", "0 0 1") + bar("b", "0.4 0 0.7") + bar("c", "0.9 0.1 0.7") +
+                joint("p", "ball", "world", "a") + joint("q", "ball", "a", "b") +
+                joint("r", "ball", "b", "c") +
+                joint("u", "universal", "world", "c",
+                      pose("0.4 0 0.3 0 0 0") + axis("0 1 0") + axis("0 0 1", dynamics, "axis2")));
+  };
+  const Model whole = chain(""), pair = chain("<dynamics><damping>1e-14</damping></dynamics>");
+  EXPECT_EQ(pair.bodies.size(), whole.bodies.size() + 1);
+  for (const double step : {0.02, 0.005}) {
+    const auto place = [&](const Model& m) { return run(m, step, 0.5).body(m.body_index("b")).r; };
+    EXPECT_LT((place(whole) - place(pair)).norm(), 1e-7) << step;
+    EXPECT_GT((place(whole) - body(whole, "b").position).norm(), 0.05) << step;
+  }
+}
+
 // Limits, damping and friction of a joint that closes a loop are those of the model's joint.
 TEST_F(SdfJoints, AJointThatClosesALoopKeepsWhatItHas) {
   const std::string inside = link("a") + link("b", pose("1 0 0 0 0 0")) +

@@ -166,6 +166,26 @@ class BodyFormer {
     return -1;
   }
 
+  /// A body with mass at the other end of a joint that closes a loop; behind the world, where that
+  /// is the ground, the body above. @param joints  That joint is added.
+  /// @returns −1 if there is none.
+  int massive_beside(int body, std::vector<int>& joints) {
+    for (std::size_t k = 0; k < robot_.joints.size(); ++k) {
+      const int j = static_cast<int>(k);
+      if (!joint(j).closes) continue;
+      const int a = at(tree_.body, at(tree_.parent, j)), b = at(tree_.body, at(tree_.child, j));
+      if (a != body && b != body) continue;
+      const int own = a == body ? b : a;
+      const int above = at(tree_.body, at(tree_.parent, at(tree_.parent_joint, body)));
+      for (const int other : {own, above})
+        if (!at(tree_.grounded, other) && unsound(at(tree_.mass, other)).empty()) {
+          joints.push_back(j);
+          return other;
+        }
+    }
+    return -1;
+  }
+
   /// Whether the motions of joints are independent in the start, so that a body with mass below
   /// them determines the motion of links without mass.
   [[nodiscard]] bool independent(const std::vector<int>& joints) {
@@ -196,7 +216,8 @@ class BodyFormer {
   /// there is none. @param top  By body: its uppermost joint.
   int determines(int body, const std::vector<int>& top) {
     std::vector<int> joints;
-    const int below = massive_below(body, joints);
+    int below = massive_below(body, joints);
+    if (below < 0) below = massive_beside(body, joints);
     if (below < 0) return -1;
     for (int above = body; !at(tree_.grounded, above) && !unsound(at(tree_.mass, above)).empty();) {
       const int j = at(top, above);
