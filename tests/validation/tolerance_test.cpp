@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Automatic steps: analysis.tolerance alone chooses order and steps, and the error follows it.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -72,6 +73,27 @@ TEST_P(Tolerance, BoundsTheErrorUpToAFactor) {
 TEST_P(Tolerance, BoundsTheErrorAtOrderEight) {
   const auto& [c, tolerance] = GetParam();
   expect_followed(end_of(c, tolerance, 8), tolerance);
+}
+
+/// Bars that lie on one line twice in a turn, where rows become dependent and members of an
+/// extrapolated step are known to 1e-11 at best: with smaller tolerances the run goes on and says
+/// so.
+TEST(ToleranceInSingularPositions, IsReachedOrSaidNotToBe) {
+  for (const int cells : {2, 10, 40})
+    for (const double tolerance : {1e-7, 1e-8, 1e-9, 1e-10}) {
+      SCOPED_TRACE(testing::Message() << cells << " cells, tolerance " << tolerance);
+      ToleranceCase c{"A02", n_four_bar_case(cells), 10.0};
+      c.published.model.analysis.method = "extrapolation";
+      const Deviation d = end_of(c, tolerance, {});
+      EXPECT_EQ(d.summary.end, RunEnd::finished) << d.summary.message;
+      EXPECT_LE(d.at_end, 200.0 * tolerance);
+      ASSERT_TRUE(d.summary.errors.has_value());
+      EXPECT_LE(d.at_end, d.summary.errors->sum);
+      const bool said = std::any_of(
+          d.summary.warnings.begin(), d.summary.warnings.end(),
+          [](const std::string& text) { return text.find("was not reached") != text.npos; });
+      EXPECT_EQ(said, d.summary.errors->largest > tolerance);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Tolerance,

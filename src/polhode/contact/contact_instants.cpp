@@ -116,7 +116,7 @@ void ContactSet::points_at(std::span<const BodyStep> instants,
       if (!overlap && !(c && c->in_front)) continue;
     }
     if (of_edges && !correct_edges(p.data, at, g)) continue;
-    if (weight_at(p.data, at.a, at.b) < kMinWeight) continue;
+    if (!is_row_at(p.data, at.a, at.b)) continue;
     const Gap<Dual> with =
         gap(p.data.pair, *p.data.a, *p.data.b, Placement<Dual>(a.r_n1, a.Lambda_n1, 0),
             Placement<Dual>(b.r_n1, b.Lambda_n1, 6));

@@ -193,7 +193,9 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     }
     ImpulsePoint point = impulse_point(i, at, steps);
     if (!acted && !enters && !must_act(point, a, b, dt) && !rolls_in(i, a, b)) continue;
-    if (!balls_[i].holds && weight_at(p.data, at_a, at_b) < kMinWeight) continue;
+    if (!balls_[i].holds && !(acts_by_rows() ? is_row_at(p.data, at_a, at_b)
+                                             : weight_at(p.data, at_a, at_b) >= kMinWeight))
+      continue;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
     p.listed = true;

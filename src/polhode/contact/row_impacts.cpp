@@ -21,7 +21,7 @@ std::optional<std::pair<int, int>> ContactSet::overlapping(std::span<const BodyS
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
     if (p.sensor || least_gap_at_end(p, a, b) > deepest) continue;
     const BothPlaced end = BothPlaced::at_end(a, b);
-    if (!balls_[i].holds && weight_at(p.data, end.a, end.b) < kMinWeight) continue;
+    if (!balls_[i].holds && !is_row_at(p.data, end.a, end.b)) continue;
     double gap = nearest_at_end(i, steps);
     if (p.data.pair.kind == GapKind::edge_edge && gap >= 0.0 && have_met(p.data, a, b)) gap = -gap;
     gap -= p.data.history.kept;

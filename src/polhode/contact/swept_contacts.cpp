@@ -44,7 +44,7 @@ bool ContactSet::overlaps_at_end(const Point& p, const BodyStep& a, const BodySt
   if (p.data.pair.kind == GapKind::edge_edge) return have_met(p.data, a, b);
   const BothPlaced at = BothPlaced::at_end(a, b);
   return gap(p.data.pair, *p.data.a, *p.data.b, at.a, at.b).distance < -near &&
-         weight_at(p.data, at.a, at.b) >= kMinWeight;
+         is_row_at(p.data, at.a, at.b);
 }
 
 /// Conservative advancement: along the normal of their gap two convex features approach no faster

@@ -35,6 +35,10 @@ constexpr double kRoundOffBelow = 1e-2;
 /// Contraction rate above which reused factors are renewed.
 constexpr double kSlowContraction = 0.05;
 
+/// Increment of a step, below which the next one is rounding if it is not smaller: with complete
+/// tangents it would be its square.
+constexpr double kRoundingOfIncrements = 1e-10;
+
 /// Factor on the iteration limit once an increment was below the tolerance: near a singular
 /// position multipliers of redundant rows converge slowly by proximal iterations.
 constexpr int kMoreWhenClose = 3;
@@ -95,6 +99,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   };
   const bool kept = engine.keeps_factor();
   const bool may_grow = engine.may_grow() || system.set_valued();
+  const bool quadratic = !kept && !may_grow && !system.stiff();
   const double left = system.stiff() ? kLeftStiff : kLeft;
   const auto most_iterations = [&] {
     return (iterated_again && !kept ? kMoreWhenClose : 1) * options.max_iterations;
@@ -132,10 +137,11 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
                    e > options.tolerance
                ? slow + 1
                : 0;
-    if (slow >= 2) return fail("converges too slowly"), report;
+    const bool rounded = slow >= 2 && quadratic && e < kRoundingOfIncrements;
+    if (slow >= 2 && !rounded) return fail("converges too slowly"), report;
 
-    iterated_again = close;
-    close = e < options.tolerance;  // the increment has to stay below
+    iterated_again = close || rounded;
+    close = e < options.tolerance || rounded;  // the increment has to stay below
     if (!close) continue;
     if (kept) {  // linear convergence: the remainder is a geometric series
       const double rate = last > 0.0 ? std::min(e / last, 0.9) : 0.1;
@@ -153,11 +159,16 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (system.only_constraints()) remainder = std::min(remainder, kCurvature * e * last);
     slowly_contracting = iterated_again && contraction > kSlowContraction;
     const bool leaves = globalization.near() && e > kLeaves * last;
-    if (!leaves) stalled = iterated_again && !kept && e > kGains * least ? stalled + 1 : 0;
+    if (rounded)
+      stalled = kStalled;
+    else if (!leaves)
+      stalled = iterated_again && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
     if (iterated_again && !kept && remainder > left && stalled < kStalled) continue;
-    if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
-      return fail("converges too slowly"), report;
+    if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance) {
+      if (!quadratic || e > kRoundingOfIncrements) return fail("converges too slowly"), report;
+      report.rounding = std::max(report.rounding, e);
+    }
     if (done.rotation > options.max_rotation) {
       fail(
           format("a body rotates by |Θ| = {:.3g} ({:.0f} deg) in one step, more than "

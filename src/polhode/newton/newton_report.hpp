@@ -21,6 +21,9 @@ struct NewtonReport {
   bool hard = false;
   /// Multipliers do work at open rows that neither rounding nor a singular position explains.
   bool leaks = false;
+  /// Largest increment that was accepted as rounding though it was not small against its tolerance;
+  /// 0 if there was none [-].
+  double rounding = 0.0;
   std::string reason;  ///< If not converged: "converges too slowly", ...
   std::string worst;   ///< Location of the largest increment: "body 'forearm'".
   ConstraintCheck constraints;

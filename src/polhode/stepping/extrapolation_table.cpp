@@ -81,6 +81,7 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   NewtonReport report;
   int iterations = 0;
   bool hard = false;
+  std::vector<double> rounding;  // of the members' ends: each substep's increments add up
   const auto columns = static_cast<std::size_t>(way.columns);
   difference_before_ = 0.0;
   const auto hopeless = [&] {
@@ -109,6 +110,7 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
     met_stop_ = end.met_stop;
     report.iterations = iterations += report.iterations;
     report.hard = hard = hard || report.hard;
+    rounding.push_back(counts_[j] * static_cast<double>(report.rounding));
     const bool ends_here = !report.converged || met_stop_ || (j + 2 == columns && hopeless());
     if (ends_here) {
       state.ledger.iterations += iterations;
@@ -117,6 +119,9 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   }
   single.ledger().forget();
   difference_ = compare_columns(columns, H);
+  rounding_ = 0.0;
+  const std::vector<double> weights = weights_of(counts_, 0, columns);
+  for (std::size_t j = 0; j < columns; ++j) rounding_ += std::abs(weights[j]) * rounding[j];
   if (columns == 2) difference_before_ = state_difference(*system_, result_, members_[0], H);
   combine_ledger(state, columns, result_);
   result_.t = state.t + H;

@@ -38,6 +38,9 @@ class ExtrapolationTable {
   [[nodiscard]] double difference() const { return difference_; }
   /// The same with one member fewer; of two members, the difference of the first from the result.
   [[nodiscard]] double difference_before() const { return difference_before_; }
+  /// Part of these that may be the members' rounding: that of increments that Newton's method
+  /// accepted above its tolerance, as near singular positions [-].
+  [[nodiscard]] double rounding() const { return rounding_; }
   /// The body with the largest difference; −1: not known.
   [[nodiscard]] int worst_body(double H) const;
   /// Time spent waiting for members of other threads [s].
@@ -71,7 +74,7 @@ class ExtrapolationTable {
   State result_, other_;  ///< The last column and the one before.
   std::unique_ptr<InstantSolver> solver_;
   std::unique_ptr<MemberThreads> threads_;  ///< Null: one thread.
-  double difference_ = 0.0, difference_before_ = 0.0;
+  double difference_ = 0.0, difference_before_ = 0.0, rounding_ = 0.0;
   bool met_stop_ = false;
 };
 

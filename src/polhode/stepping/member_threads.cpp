@@ -37,6 +37,7 @@ MemberEnd take_member(State& member, int steps, double H, SingleStep& single,
   MemberEnd end;
   int iterations = 0;
   bool hard = false;
+  double rounding = 0.0;
   single.ledger().forget();
   for (int k = 0; k < steps && !(useless && useless()); ++k) {
     SingleStep::Predictor predictor;
@@ -45,11 +46,13 @@ MemberEnd take_member(State& member, int steps, double H, SingleStep& single,
     end.report = single.take(member, H / steps, newton, predictor);
     iterations += end.report.iterations;
     hard = hard || end.report.hard;
+    rounding = std::max(rounding, end.report.rounding);
     end.met_stop = end.report.converged && (single.stopped() || single.jumped());
     if (!end.report.converged || end.met_stop) break;
   }
   end.report.iterations = iterations;
   end.report.hard = hard;
+  end.report.rounding = rounding;
   return end;
 }
 

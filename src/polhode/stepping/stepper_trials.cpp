@@ -154,7 +154,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   Verdict v;
   companion_iterations = 0;
   double power = 0.5, safety = kSafety, longest = kMaxFactor;
-  const double allowed = allowed_error(from, H);
+  const double allowed = std::max(allowed_error(from, H), extrapolates() ? table->rounding() : 0.0);
   std::optional<double> error;
   if (composed()) {
     error = extrapolates() ? extrapolated_error(from, reached, H, allowed)
