@@ -50,6 +50,47 @@ TEST(RigidLawFaults, NothingPassesThroughAThinBoard) {
       }
 }
 
+// Cylinders and cones thrown onto a plane come to lie flat or roll: the lowest point of a rim is a
+// row at any angle, so that nothing of it is below the plane but what its rounding cuts off.
+TEST(RigidLawFaults, RoundBodiesComeToLieFlat) {
+  struct Round {
+    const char* kind;
+    double diameter, length;
+  };
+  for (const Round& r : {Round{"cylinder", 0.2, 0.04}, Round{"cylinder", 0.1, 0.1},
+                         Round{"cylinder", 0.1, 0.4}, Round{"cone", 0.2, 0.1}})
+    for (const double h : {1e-2, 5e-3, 1e-3})
+      for (int k = 0; k < 6; ++k) {
+        SCOPED_TRACE(
+            format("{} of {} m and {} m, step {} s, throw {}", r.kind, r.diameter, r.length, h, k));
+        const double angle = k < 2 ? 3.0 * k : 40.0 * k, R = 0.5 * r.diameter;
+        Simulation s = made(model(
+            format("  floor: {{fixed: true, shape: {{plane: z}}}}\n"
+                   "  round: {{shape: {{{}: [{}, {}]}}, density: 1000, position: [0, 0, {}], "
+                   "orientation: {{axis: [1, {}, 0.3], angle: {} deg}}, velocity: [0.4, -0.3, 0], "
+                   "angular_velocity: [{}, 1, 2]}}",
+                   r.kind, r.diameter, r.length, std::hypot(R, r.length) + 0.02, 0.2 * k, angle,
+                   k - 2),
+            format(", friction: {}, restitution: {}", 0.3 * (k % 3), 0.35 * (k % 2)),
+            format("duration: 1.5, step: {}", h)));
+        double lowest = 1.0;
+        while (s.time() < 1.5 * (1.0 - 1e-9)) {
+          const StepReport report = s.step(1.5);
+          ASSERT_TRUE(report.accepted) << report.message;
+          const BodyMotion m = s.body(1);
+          const Vec3 axis = m.q * Vec3::UnitZ();
+          const double across = R * std::hypot(axis.x(), axis.y());
+          const bool cone = std::string(r.kind) == "cone";
+          // The centre of mass of a cone is at a quarter of its height.
+          const double down = (cone ? 0.25 : 0.5) * r.length, up = (cone ? 0.75 : 0.5) * r.length;
+          lowest = std::min({lowest, m.r.z() - down * axis.z() - across,
+                             m.r.z() + up * axis.z() - (cone ? 0.0 : across)});
+        }
+        EXPECT_GT(lowest, -1e-3 * std::min(R, r.length));
+        EXPECT_LE(s.summary().energy_drift, 1e-11);
+      }
+}
+
 // Two balls that meet off centre at any speed and step, also with automatic steps: the impulse is
 // along the line of centres, and momentum and energy (e = 1) are kept.
 TEST(RigidLawFaults, FastBallsMeet) {

@@ -45,7 +45,8 @@ double weight_at(const PointData& data, const Placement<double>& at_a,
   return fading(data.pair, dot(f.a, f.b));
 }
 
-bool is_row_at(const PointData& data, const Placement<double>& at_a, const Placement<double>& at_b) {
+bool is_row_at(const PointData& data, const Placement<double>& at_a,
+               const Placement<double>& at_b) {
   return data.pair.kind == GapKind::extreme_plane || weight_at(data, at_a, at_b) >= kMinWeight;
 }
 

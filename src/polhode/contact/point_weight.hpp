@@ -13,8 +13,8 @@ inline constexpr double kMinWeight = 0.5;
 [[nodiscard]] double weight_at(const PointData& data, const Placement<double>& at_a,
                                const Placement<double>& at_b);
 
-/// Whether a feature pair has a gap of its own, which is a row, at these placements: where it has no
-/// unique direction its neighbours have. The extreme point of a rim over a plane has one at any
+/// Whether the gap of a feature pair is that of a row at these placements. Where its direction is
+/// not unique, neighbours are rows instead. The extreme point of a rim over a plane is one at any
 /// angle, as it is the lowest of all.
 [[nodiscard]] bool is_row_at(const PointData& data, const Placement<double>& at_a,
                              const Placement<double>& at_b);
