@@ -244,6 +244,60 @@ TEST_F(MjcfContact, PairsAndExclusionsActInModelsWithContacts) {
   EXPECT_EQ(read(kTouching).contacts.present, false);
 }
 
+// The larger coefficient of two geoms holds, unless the model has one of its own.
+TEST_F(MjcfContact, FrictionOfGeomsIsThatOfContact) {
+  const auto with = [&](const std::string& second, const std::string& contacts) {
+    write("robot.xml",
+          "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body name='a' pos='0 0 1'>"
+          "<freejoint/><geom size='0.1' friction='0.7'/></body><body name='b' pos='0 0 2'>"
+          "<freejoint/><geom size='0.1' " +
+              second + "/></body></worldbody></mujoco>");
+    return io::read_model(
+        write("model.yaml", "format: 1\nimport: {file: robot.xml}\ncontacts: " + contacts + "\n"));
+  };
+  const Model model = with("friction='0.2'", "{}");
+  EXPECT_EQ(model.contacts.friction, Combination::maximum);
+  const auto friction = [](const Model& m, const char* body) {
+    const auto& shape = m.bodies.at(static_cast<std::size_t>(m.body_index(body))).shapes.at(0);
+    for (const ContactMaterialSpec& material : m.contacts.materials)
+      if (material.name == shape.contact.material) return material.friction;
+    return m.contacts.standard.friction;
+  };
+  EXPECT_EQ(friction(model, "world"), 1.0);
+  EXPECT_EQ(friction(model, "a"), 0.7);
+  EXPECT_EQ(friction(model, "b"), 0.2);
+  EXPECT_EQ(friction(with("condim='1'", "{}"), "b"), 0.0);
+  const Model own = with("friction='0.2'", "{default: {friction: 0.4}}");
+  EXPECT_EQ(friction(own, "world"), 0.4);
+  EXPECT_EQ(friction(own, "a"), 0.4);
+  const Model one = read_with_contacts();
+  EXPECT_EQ(one.contacts.standard.friction, 1.0);
+  EXPECT_TRUE(one.contacts.materials.empty());
+}
+
+// A body with two joints, and one welded to it, do not touch their parent; those above it do.
+TEST_F(MjcfContact, RelativesDoNotTouch) {
+  const std::string geom = "<geom size='0.3'/>";
+  write("robot.xml", "<mujoco><worldbody><body name='a'><joint axis='1 0 0'/>" + geom +
+                         "<body name='b' pos='0 0 1'><joint axis='1 0 0'/><joint axis='0 1 0'/>" +
+                         geom + "<body name='c' pos='0 0 1'>" + geom +
+                         "<body name='d' pos='0 0 1'><joint/>" + geom +
+                         "</body></body></body></body></worldbody></mujoco>");
+  const Model model =
+      io::read_model(write("model.yaml", "format: 1\nimport: {file: robot.xml}\ncontacts: {}\n"));
+  const auto excluded = [&](const char* one, const char* other) {
+    const Side a = model.body_index(one), b = model.body_index(other);
+    for (const auto& pair : model.contacts.excluded)
+      if ((pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a)) return true;
+    return false;
+  };
+  EXPECT_TRUE(excluded("a", "b"));
+  EXPECT_TRUE(excluded("a", "c"));
+  EXPECT_TRUE(excluded("b", "d"));
+  EXPECT_FALSE(excluded("a", "d"));
+  EXPECT_EQ(model.contacts.excluded.size(), 3U);  // Others have a joint between them.
+}
+
 TEST_F(MjcfContact, FaultsOfContactsAreNamed) {
   const auto message = [&](const std::string& more) {
     try {

@@ -22,6 +22,7 @@ struct ImportOptions {
   bool actuators = true;                             ///< Whether there are motors and servos.
   std::string keyframe;                              ///< Of an MJCF: "": the first one, none: none.
   bool contacts = false;                             ///< Whether the model has contacts.
+  bool contact_friction = false;                     ///< Whether it gives them a friction.
   bool allow_partial = false;                        ///< Whether parts may be left out.
   std::vector<std::string> package_paths;            ///< Folders that contain packages.
   std::map<std::string, std::vector<double>> start;  ///< Coordinates at the start by joint, SI.

@@ -2,6 +2,7 @@
 #include <polhode/io/importers/mjcf_contacts.hpp>
 
 #include <algorithm>
+#include <map>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -81,9 +82,61 @@ class MjcfContactReader {
     robot_.contacts.pairs.push_back(std::move(pair));
   }
 
+  /// Bodies welded to each other, and those welded to a body and to its parent, do not touch,
+  /// except in pairs; joints between two bodies are known to the model.
+  void exclude_relatives() {
+    const auto& links = robot_.links;
+    for (const RobotJoint& joint : robot_.joints) above_[joint.child] = &joint;
+    for (const RobotLink& link : links) known_[link.name] = link.name_in_file;
+    for (std::size_t i = 1; i < links.size(); ++i)
+      for (std::size_t j = 1; j < i; ++j) {
+        const RobotLink &a = links[i], &b = links[j];
+        if (!has_shape(a) || !has_shape(b)) continue;
+        const std::string one = weld(a.name), other = weld(b.name);
+        const bool related = one == other || (parent(one) == other && other != links[0].name) ||
+                             (parent(other) == one && one != links[0].name);
+        if (related && !is_joined(a.name, b.name) && !is_pair(a.name, b.name))
+          robot_.contacts.exclusions.push_back({a.at, {b.name, a.name}, true});
+      }
+  }
+
  private:
+  static bool has_shape(const RobotLink& link) {
+    return !link.visual.empty() || !link.collision.empty();
+  }
+  /// The first of the links to which one is welded.
+  [[nodiscard]] std::string weld(std::string link) const {
+    for (auto at = above_.find(link); at != above_.end() && at->second->type == "fixed";
+         at = above_.find(link))
+      link = at->second->parent;
+    return link;
+  }
+  /// That of the body above; "" above the world.
+  [[nodiscard]] std::string parent(const std::string& link) const {
+    auto at = above_.find(link);
+    while (at != above_.end() && !known_.at(at->second->parent))
+      at = above_.find(at->second->parent);
+    return at == above_.end() ? "" : weld(at->second->parent);
+  }
+  [[nodiscard]] bool is_joined(const std::string& a, const std::string& b) const {
+    const auto below = [&](const std::string& child, const std::string& upper) {
+      const auto at = above_.find(child);
+      return at != above_.end() && at->second->parent == upper;
+    };
+    return below(a, b) || below(b, a);
+  }
+  [[nodiscard]] bool is_pair(const std::string& a, const std::string& b) const {
+    return std::any_of(robot_.contacts.pairs.begin(), robot_.contacts.pairs.end(),
+                       [&](const RobotContactPair& pair) {
+                         return (pair.links[0] == a && pair.links[1] == b) ||
+                                (pair.links[0] == b && pair.links[1] == a);
+                       });
+  }
+
   MjcfFile& file_;
   const MjcfBodies& bodies_;
+  std::map<std::string, const RobotJoint*> above_;  ///< By its child.
+  std::map<std::string, bool> known_;               ///< Whether a link has a body in the file.
   Robot& robot_;
 };
 
@@ -105,7 +158,9 @@ void read_contacts(MjcfFile& file, const MjcfBodies& bodies, const ImportOptions
     if (!options.contacts)
       file.ignored.add(*section, "<contact>", "acts where the model has 'contacts'");
   }
-  if (options.contacts)
+  if (options.contacts) reader.exclude_relatives();
+  robot.contacts.friction = options.contacts && !options.contact_friction;
+  if (options.contacts && options.contact_friction)
     file.ignored.add(file.xml.root(), "friction of geoms",
                      "is that of 'contacts' in the model, except in pairs");
 }

@@ -140,6 +140,7 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   shape.kind = type;
   shape.name = xml.text(e, "name").value_or("");
   shape.contact_bits = bits;
+  shape.friction = geom.dimensions >= 3.0 ? geom.friction[0] : 0.0;
   Pose pose = tag.pose();
   std::vector<double> half = tag.numbers("size", 1, 3);
   if (const auto ends = tag.numbers("fromto", 6, 6); !ends.empty()) {

@@ -40,6 +40,7 @@ struct RobotShape {
   /// Two shapes touch if a bit of the first number of one is one of the second of the other.
   std::pair<int, int> contact_bits{1, 1};
   std::vector<int> contact_pairs;  ///< Numbers of pairs in which it touches.
+  double friction = 0.0;           ///< Coefficient of contact.
 };
 
 struct RobotLink {
@@ -188,6 +189,7 @@ struct RobotCable {
 struct RobotExclusion {
   const XmlFile::Element* at = nullptr;
   std::string links[2];
+  bool by_tree = false;  ///< By their places in the tree, and not by the file.
 };
 
 /// Two links with properties of contact of their own.
@@ -201,6 +203,7 @@ struct RobotContactPair {
 /// What touches, in a model with contacts.
 struct RobotContacts {
   bool wanted = false;
+  bool friction = false;  ///< By the larger coefficient of two shapes.
   std::vector<RobotExclusion> exclusions;
   std::vector<RobotContactPair> pairs;
 };

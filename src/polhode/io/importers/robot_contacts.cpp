@@ -19,6 +19,8 @@ std::string group_of(const std::pair<int, int>& bits) {
   return format("contact_{}_{}", bits.first, bits.second);
 }
 
+std::string material_of(double friction) { return allowed_name(format("friction_{}", friction)); }
+
 std::string group_of_pair(int pair) { return format("pair_{}", pair + 1); }
 
 }  // namespace
@@ -33,6 +35,7 @@ ContactWriter::ContactWriter(const Robot& robot, const RobotTree& tree,
       for (const RobotShape& shape : *shapes) {
         kinds.insert(shape.contact_bits);
         by_groups_ = by_groups_ || !shape.contact_pairs.empty();
+        if (shape.contact_bits != std::pair(0, 0)) frictions_.insert(shape.friction);
       }
   kinds_.assign(kinds.begin(), kinds.end());
   for (const auto& a : kinds_)
@@ -41,8 +44,16 @@ ContactWriter::ContactWriter(const Robot& robot, const RobotTree& tree,
 
 void ContactWriter::put_shape(const RobotShape& shape, const NodeBuilder& make,
                               SourceNode& node) const {
-  if (!robot_.contacts.wanted || !by_groups_) return;
+  if (!robot_.contacts.wanted) return;
   SourceNode contact = make.map();
+  if (by_groups_) put_groups(shape, make, contact);
+  if (robot_.contacts.friction && frictions_.size() > 1 && contact.find("touches") == nullptr)
+    make.put(contact, "material", make.text(material_of(shape.friction)));
+  if (!contact.keys.empty()) make.put(node, "contact", std::move(contact));
+}
+
+void ContactWriter::put_groups(const RobotShape& shape, const NodeBuilder& make,
+                               SourceNode& contact) const {
   std::vector<SourceNode> groups, meets;
   for (const auto& other : kinds_)
     if (bits_meet(shape.contact_bits, other)) meets.push_back(make.text(group_of(other)));
@@ -57,7 +68,6 @@ void ContactWriter::put_shape(const RobotShape& shape, const NodeBuilder& make,
     make.put(contact, "groups", make.list(std::move(groups)));
     make.put(contact, "meets", make.list(std::move(meets)));
   }
-  make.put(node, "contact", std::move(contact));
 }
 
 std::string ContactWriter::body_with_shape(const std::string& link, const XmlFile::Element& at,
@@ -66,6 +76,7 @@ std::string ContactWriter::body_with_shape(const std::string& link, const XmlFil
   const std::string& name = link_names_[static_cast<std::size_t>(tree_.body[own])];
   const SourceNode* body = bodies.find(name);
   if (body != nullptr && body->find("shape") != nullptr) return name;
+  if (what.empty()) return "";
   notes_.push_back({ImportNote::Kind::ignored, xml_.place(at),
                     format("{} is of {}, which has no shape", what, quote(link))});
   return "";
@@ -84,14 +95,19 @@ SourceNode ContactWriter::section(const SourceNode& bodies) {
                             const std::string& what) {
     std::vector<std::string> names;
     if (are_fixed(links)) return names;
-    for (const std::string& link : links) names.push_back(body_with_shape(link, at, bodies, what));
+    for (const std::string& link : links) {
+      names.push_back(body_with_shape(link, at, bodies, what));
+      if (names.back().empty()) break;
+    }
+    names.resize(2);
     if (names[0].empty() || names[1].empty() || names[0] == names[1]) names.clear();
     return names;
   };
+  std::set<std::pair<std::string, std::string>> listed;
   for (const RobotExclusion& e : robot_.contacts.exclusions) {
-    const auto names = names_of(e.links, *e.at, "an excluded contact");
+    const auto names = names_of(e.links, *e.at, e.by_tree ? "" : "an excluded contact");
     const NodeBuilder here{xml_.line(*e.at)};
-    if (!names.empty())
+    if (!names.empty() && listed.insert(std::minmax(names[0], names[1])).second)
       excluded.children.push_back(here.list({here.text(names[0]), here.text(names[1])}));
   }
   std::set<std::pair<std::string, std::string>> seen;
@@ -114,6 +130,21 @@ SourceNode ContactWriter::section(const SourceNode& bodies) {
     std::string name = allowed_name(pair.name);
     while (pairs.find(name) != nullptr) name += "_2";
     make.put(pairs, name, std::move(law));
+  }
+  if (robot_.contacts.friction && frictions_.size() == 1) {
+    SourceNode standard = make.map();
+    make.put(standard, "friction", make.number(*frictions_.begin()));
+    make.put(contacts, "default", std::move(standard));
+  } else if (robot_.contacts.friction && !frictions_.empty()) {
+    SourceNode materials = make.map(), combine = make.map();
+    for (const double friction : frictions_) {
+      SourceNode material = make.map();
+      make.put(material, "friction", make.number(friction));
+      make.put(materials, material_of(friction), std::move(material));
+    }
+    make.put(contacts, "materials", std::move(materials));
+    make.put(combine, "friction", make.text("maximum"));
+    make.put(contacts, "combine", std::move(combine));
   }
   if (!excluded.children.empty()) make.put(contacts, "exclude", std::move(excluded));
   if (!pairs.keys.empty()) make.put(contacts, "pairs", std::move(pairs));

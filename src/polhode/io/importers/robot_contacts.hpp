@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ class ContactWriter {
   [[nodiscard]] SourceNode section(const SourceNode& bodies);
 
  private:
+  void put_groups(const RobotShape& shape, const NodeBuilder& make, SourceNode& contact) const;
   /// Body of a link, if it has a shape. @returns "" after a note.
   std::string body_with_shape(const std::string& link, const XmlFile::Element& at,
                               const SourceNode& bodies, const std::string& what);
@@ -36,6 +38,7 @@ class ContactWriter {
   /// Kinds of shapes by the bits of their contact, and whether all of them touch each other.
   std::vector<std::pair<int, int>> kinds_;
   bool by_groups_ = false;
+  std::set<double> frictions_;  ///< Coefficients of all shapes that touch.
 };
 
 }  // namespace polhode::io

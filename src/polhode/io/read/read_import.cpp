@@ -131,7 +131,12 @@ ImportReport expand_import(SourceTree& tree, const std::string& folder,
   diagnostics.throw_if_any();
   ReadContext context{.tree = tree, .diagnostics = diagnostics};
   ImportOptions options = read_options(context, *node, folder);
-  options.contacts = root.find("contacts") != nullptr;
+  if (const SourceNode* contacts = root.find("contacts")) {
+    options.contacts = true;
+    const SourceNode* standard = contacts->is_map() ? contacts->find("default") : nullptr;
+    options.contact_friction =
+        standard != nullptr && standard->is_map() && standard->find("friction") != nullptr;
+  }
   if (const SourceNode* units = root.find("units"))
     context.fault(*units, "units", "cannot be combined with an import, which is in SI",
                   "Leave it out, and write units after numbers.");
