@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include <polhode/compile/plan_solid.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode::cli {
@@ -19,6 +22,15 @@ namespace polhode::cli {
   return static_cast<int>(
       std::count_if(model.bodies.begin(), model.bodies.end(),
                     [](const BodySpec& body) { return body.node_of.empty() && !body.fixed; }));
+}
+
+/// Kinds of element of a solid, once each, though a solid of several materials has several groups
+/// of a kind.
+[[nodiscard]] inline std::vector<std::string> element_kinds_of(const SolidPlan& plan) {
+  std::vector<std::string> kinds;
+  for (const std::string& kind : plan.elements)
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+  return kinds;
 }
 
 }  // namespace polhode::cli

@@ -286,7 +286,7 @@ void bind_engine(nb::module_& m) {
           [](Engine& e, int i) {
             const LoadSpec& load = e.model().loads.at(static_cast<std::size_t>(i));
             std::vector<std::pair<std::string, int>> channels;
-            if (load.solid < 0)
+            if (load.reports())
               for (const LoadChannel& c : load_kind(load.type).channels)
                 channels.emplace_back(c.name, c.size);
             return channels;

@@ -178,7 +178,7 @@ nlohmann::ordered_json solids_json(const Simulation& simulation) {
     list.push_back({{"name", simulation.model().solids[i].name},
                     {"nodes", solid.node_count()},
                     {"elements", solid.plan.mesh.element_count()},
-                    {"element_kinds", solid.plan.elements},
+                    {"element_kinds", element_kinds_of(solid.plan)},
                     {"mass", solid.mass},
                     {"volume", solid.plan.volume},
                     {"interfaces", interfaces},
@@ -389,14 +389,15 @@ int check(const CheckOptions& options) {
       rows.push_back({"duration", "none", "steps from Python or C++; a run needs --duration"});
     for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
       const SolidMap& solid = simulation.solids()[i];
-      rows.push_back({format("solid {}", simulation.model().solids[i].name),
-                      counted(static_cast<std::size_t>(solid.node_count()), "node", "nodes"),
-                      format("{} {}, {:.6g} kg, {:.6g} m^3, held by {}; smallest Jacobian "
-                             "determinant {:.3g} m^3 in "
-                             "element {}",
-                             solid.plan.mesh.element_count(), name_list(solid.plan.elements),
-                             solid.mass, solid.plan.volume, interfaces_text(simulation, i),
-                             solid.plan.least_jacobian, solid.plan.least_element)});
+      rows.push_back(
+          {format("solid {}", simulation.model().solids[i].name),
+           counted(static_cast<std::size_t>(solid.node_count()), "node", "nodes"),
+           format("{} {}, {:.6g} kg, {:.6g} m^3, held by {}; smallest Jacobian "
+                  "determinant {:.3g} m^3 in "
+                  "element {}",
+                  solid.plan.mesh.element_count(), name_list(element_kinds_of(solid.plan)),
+                  solid.mass, solid.plan.volume, interfaces_text(simulation, i),
+                  solid.plan.least_jacobian, solid.plan.least_element)});
     }
     add_line_rows(simulation, rows);
     add_surface_rows(simulation, rows);

@@ -199,17 +199,17 @@ std::string describe(const Simulation& simulation) {
     return std::vector<std::string>{l.name, l.type, on};
   });
   std::size_t next = 0;
-  text += section(
-      "Solids", {"name", "elements", "nodes", "mass [kg]", "material", "stress"}, model.solids,
-      [&](const SolidSpec& spec) -> std::vector<std::string> {
-        const SolidMap& solid = simulation.solids()[next++];
-        return {spec.name,
-                format("{} {}", solid.plan.mesh.element_count(), joined(solid.plan.elements)),
-                format("{}", solid.node_count()),
-                format("{:.6g}", solid.mass),
-                spec.material,
-                spec.stress};
-      });
+  text += section("Solids", {"name", "elements", "nodes", "mass [kg]", "material", "stress"},
+                  model.solids, [&](const SolidSpec& spec) -> std::vector<std::string> {
+                    const SolidMap& solid = simulation.solids()[next++];
+                    return {spec.name,
+                            format("{} {}", solid.plan.mesh.element_count(),
+                                   joined(element_kinds_of(solid.plan))),
+                            format("{}", solid.node_count()),
+                            format("{:.6g}", solid.mass),
+                            spec.material,
+                            spec.stress};
+                  });
   text += section("Beams", {"name", "elements", "section", "mass [kg]"}, model.beams,
                   [](const BeamSpec& beam) -> std::vector<std::string> {
                     return {beam.name, format("{}", beam.mesh.size()), beam.section.name,
@@ -245,7 +245,7 @@ std::string describe_json(const Simulation& simulation) {
     const SolidMap& solid = simulation.solids()[i];
     solids.push_back({{"name", model.solids[i].name},
                       {"material", model.solids[i].material},
-                      {"elements", solid.plan.elements},
+                      {"elements", element_kinds_of(solid.plan)},
                       {"nodes", solid.node_count()},
                       {"mass", solid.mass}});
   }

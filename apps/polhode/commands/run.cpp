@@ -17,6 +17,7 @@
 #include "certify_report.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "model_counts.hpp"
 #include "modes_report.hpp"
 #include "run_report.hpp"
 #include "stop_signal.hpp"
@@ -60,7 +61,7 @@ void narrate_start(const Simulation& simulation, const std::string& folder) {
     say(format("Solid {}: {}, {} {}.", model.solids[i].name,
                counted(simulation.solids()[i].plan.start.size(), "node", "nodes"),
                simulation.solids()[i].plan.mesh.element_count(),
-               name_list(simulation.solids()[i].plan.elements)));
+               name_list(element_kinds_of(simulation.solids()[i].plan))));
   const StartReport& start = simulation.start_report();
   if (start.largest_move > 1e-9)
     say(format("The start was assembled: body '{}' moved most, by {:.2g} of the mechanism's size.",

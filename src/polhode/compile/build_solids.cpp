@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <map>
 #include <memory>
 
 #include <polhode/compile/build_solids.hpp>
 #include <polhode/compile/solid_parts.hpp>
+#include <polhode/compile/solid_point.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/solids/loads/registry.hpp>
@@ -12,6 +15,9 @@
 namespace polhode {
 
 namespace {
+
+/// Weight of a node below which it is rounding of a point at another node.
+constexpr double kNoWeight = 1e-9;
 
 /// A rigid-body motion at the start.
 struct RigidMotion {
@@ -51,23 +57,29 @@ class SolidBuilder {
 
  private:
   void make_elements() {
-    const MaterialSpec& spec =
-        model_.materials[static_cast<std::size_t>(model_.material_index(solid_.material))];
-    const std::shared_ptr<const solids::Material> material =
-        solids::make_material(format("materials.{}", spec.name), material_description(spec));
+    std::map<int, std::shared_ptr<const solids::Material>> materials;
+    const Quat orientation = solid_.mesh.orientation.normalized();
     const std::vector<Vec3> X = positions(map_.plan, map_.first_node);
     for (std::size_t b = 0; b < map_.plan.mesh.blocks.size(); ++b) {
+      const int index = map_.plan.materials[b];
+      const MaterialSpec& spec = model_.materials[static_cast<std::size_t>(index)];
+      std::shared_ptr<const solids::Material>& material = materials[index];
+      if (!material)
+        material =
+            solids::make_material(format("materials.{}", spec.name), material_description(spec));
       solids::SolidElementsDescription d{.name = format("solids.{}", solid_.name),
                                          .element = map_.plan.elements[b],
                                          .material = material,
-                                         .density = map_.plan.density,
+                                         .density = map_.plan.densities[b],
                                          .conserving = solid_.stress == "conserving",
                                          .connectivity = map_.plan.mesh.blocks[b].nodes,
                                          .X = X,
                                          .isa = model_.analysis.isa};
       for (int& node : d.connectivity) node += map_.first_node;
-      for (const FibreSpec& fibre : spec.fibres)
-        d.fibres.push_back(solid_.mesh.orientation.normalized() * fibre.direction);
+      if (map_.plan.fibres[b].empty())
+        for (const FibreSpec& fibre : spec.fibres)
+          d.fibres.push_back(orientation * fibre.direction);
+      for (const Vec3& direction : map_.plan.fibres[b]) d.fibres.push_back(orientation * direction);
       groups_.push_back(solids::make_solid_elements(std::move(d)));
       for (const std::string& warning : groups_.back()->warnings())
         map_.plan.warnings.push_back(warning);
@@ -177,13 +189,17 @@ std::vector<int> add_solid_load(System& system, const LoadSpec& load, const Soli
                                  .value = load.value,
                                  .vector = load.vector.value_or(TimeVector{}),
                                  .values = load.parameters,
-                                 .X = positions(solid.plan, solid.first_node),
-                                 .density = solid.plan.density};
+                                 .X = positions(solid.plan, solid.first_node)};
   for (const Parameter& p : kind.parameters)
     if (p.standard) d.values.try_emplace(p.name, *p.standard);
   if (load.follower)
     d.follower =
         load.keeps == "work" ? solids::FollowerRule::kWork : solids::FollowerRule::kMomentum;
+  std::vector<int> groups;
+  const auto add = [&] {
+    for (std::unique_ptr<ElementGroup>& group : kind.make(d))
+      groups.push_back(system.add_elements(std::move(group)));
+  };
   switch (kind.place) {
     case solids::SolidLoadPlace::faces:
       d.faces = system_faces(solid, solids::select_faces(where + ".surface", mesh, load.selection));
@@ -194,15 +210,26 @@ std::vector<int> add_solid_load(System& system, const LoadSpec& load, const Soli
       break;
     case solids::SolidLoadPlace::elements:
       for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-        d.elements.push_back({solid.plan.elements[b], mesh.blocks[b].nodes});
+        d.density = solid.plan.densities[b];
+        d.elements = {{solid.plan.elements[b], mesh.blocks[b].nodes}};
         for (int& node : d.elements.back().nodes) node += solid.first_node;
+        add();
       }
-      break;
+      return groups;
   }
-  std::vector<int> groups;
-  for (std::unique_ptr<ElementGroup>& group : kind.make(d))
-    groups.push_back(system.add_elements(std::move(group)));
+  add();
   return groups;
+}
+
+NodePoint node_point(const SolidMap& solid, const std::string& where, const Vec3& X) {
+  const SolidPoint point = solid_point(where, solid.plan.mesh, X);
+  NodePoint result;
+  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+    if (std::abs(point.weights[k]) <= kNoWeight) continue;
+    result.nodes.push_back(solid.first_node + point.nodes[k]);
+    result.weights.push_back(point.weights[k]);
+  }
+  return result;
 }
 
 }  // namespace polhode

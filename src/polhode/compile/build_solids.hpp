@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/compile/plan_solid.hpp>
+#include <polhode/loads/pair_on_nodes.hpp>
 #include <polhode/solids/loads/loaded_faces.hpp>
 #include <polhode/system/system.hpp>
 
@@ -41,5 +42,10 @@ struct SolidMap {
 /// @throws InputError if its type does not act on solids, its value is missing, or its selection is
 /// empty.
 std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid);
+
+/// Point of a solid by the System's node numbers.
+/// @param X  In the mesh's own coordinates [m].
+/// @throws InputError, at `where`, if it lies in no element.
+[[nodiscard]] NodePoint node_point(const SolidMap& solid, const std::string& where, const Vec3& X);
 
 }  // namespace polhode

@@ -53,14 +53,17 @@ contact::NormalPotential potential_between_surfaces(const std::string& word) {
   return potential;
 }
 
-/// Young's modulus at small strains [Pa].
-double modulus(const Model& model, const SolidSpec& solid) {
-  const MaterialSpec& spec =
-      model.materials[static_cast<std::size_t>(model.material_index(solid.material))];
-  const solids::LinearModuli m =
-      solids::make_material(format("materials.{}", spec.name), material_description(spec))
-          ->linear();
-  return m.shear * (3.0 * m.lame + 2.0 * m.shear) / (m.lame + m.shear);
+/// Young's modulus at small strains [Pa]: the smallest of a solid's materials.
+double modulus(const Model& model, const SolidMap& solid) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const int material : solid.plan.materials) {
+    const MaterialSpec& spec = model.materials[static_cast<std::size_t>(material)];
+    const solids::LinearModuli m =
+        solids::make_material(format("materials.{}", spec.name), material_description(spec))
+            ->linear();
+    least = std::min(least, m.shear * (3.0 * m.lame + 2.0 * m.shear) / (m.lame + m.shear));
+  }
+  return least;
 }
 
 class SurfacesBuilder {
@@ -389,8 +392,7 @@ class SurfacesBuilder {
   [[nodiscard]] SurfaceMaterial material_of(const std::vector<int>& solids) const {
     SurfaceMaterial material;
     for (const int s : solids) {
-      material.E =
-          std::min(material.E, modulus(model_, model_.solids[static_cast<std::size_t>(s)]));
+      material.E = std::min(material.E, modulus(model_, solids_[static_cast<std::size_t>(s)]));
       material.pressure = kPressure * material.E;
     }
     return material;

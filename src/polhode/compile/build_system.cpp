@@ -8,6 +8,7 @@
 #include <polhode/beams/cable.hpp>
 #include <polhode/beams/running_cable.hpp>
 #include <polhode/compile/beam_mesh.hpp>
+#include <polhode/compile/build_load_on_nodes.hpp>
 #include <polhode/compile/build_slide.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>
@@ -216,6 +217,11 @@ class Builder {
 
   void add_load(const LoadSpec& load) {
     const std::string where = format("loads.{}", load.name);
+    if (load.has_end_on_solid()) {
+      map_.load_on_nodes[static_cast<int>(&load - model_.loads.data())] =
+          add_load_on_nodes(system_, model_, load, map_);
+      return;
+    }
     if (load.solid >= 0) {
       if (load.of_motion.index() != 0)
         throw InputError(where, "a load on a solid cannot be a function of the motion",
@@ -455,7 +461,7 @@ class Builder {
       }
       std::size_t& item = next[load.type];
       map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(item));
-      item += static_cast<std::size_t>(load.solid >= 0 ? 1 : load_kind(load.type).parts) +
+      item += static_cast<std::size_t>(load.solid >= 0 ? 0 : load_kind(load.type).parts) +
               load.others.size();
     }
     const auto take = [&](const std::string& kind, auto& things, auto&& size,

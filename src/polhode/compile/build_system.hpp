@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct ControllerMemory {
   }
 };
 
+class PairOnNodes;
 class RunningCable;
 
 /// Positions of the objects of a Model in its System.
@@ -52,6 +54,8 @@ struct SystemMap {
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
   /// By Model::loads: likewise; -1 for a load on a solid.
   std::vector<int> load;
+  /// Those between points of solids, by Model::loads; owned by the System.
+  std::map<int, const PairOnNodes*> load_on_nodes;
   std::vector<SolidMap> solids;         ///< By Model::solids.
   std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
   std::vector<std::vector<int>> cable;  ///< By Model::cables and segment: likewise.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <polhode/compile/plan_solid.hpp>
 #include <polhode/compile/solid_parts.hpp>
@@ -37,7 +38,7 @@ class SolidPlanner {
     const Mat3 R = solid_.mesh.orientation.normalized().toRotationMatrix();
     for (const Vec3& X : plan_.mesh.nodes) plan_.start.push_back(solid_.mesh.position + R * X);
     if (!check_cells()) return std::move(plan_);
-    choose_material();
+    if (!choose_materials()) return std::move(plan_);
     select_nodes_held();
     select_touching();
     measure();
@@ -114,27 +115,110 @@ class SolidPlanner {
     return sound;
   }
 
-  void choose_material() {
-    const MaterialSpec* material = nullptr;
+  /// Number of a material of the model; nothing after an error.
+  std::optional<int> material_of(const std::string& key, const std::string& name) {
     try {
-      const int index = model_.material_index(solid_.material);
-      material = &model_.materials[static_cast<std::size_t>(index)];
+      return model_.material_index(name);
     } catch (const InputError& e) {
-      fault("material", e.what_is_wrong(), e.hint());
-      return;
+      fault(key, e.what_is_wrong(), e.hint());
+      return std::nullopt;
     }
-    plan_.density = solid_.density.value_or(material->density);
-    if (!(plan_.density > 0.0))
-      fault(solid_.density ? "density" : "", format("the density is {:g} kg/m^3", plan_.density),
-            "Give the material or the solid a density above zero");
-    for (const solids::ElementBlock& block : plan_.mesh.blocks) {
+  }
+
+  /// Part of each element: 0 with the solid's material, or one more than the number of its region.
+  std::vector<int> parts_by_element() {
+    std::vector<int> part(static_cast<std::size_t>(plan_.mesh.element_count()), 0);
+    for (std::size_t k = 0; k < solid_.regions.size(); ++k) {
+      const RegionSpec& region = solid_.regions[k];
+      const std::string key = format("regions.{}", region.name);
+      std::vector<int> elements = region.elements;
+      for (std::size_t s = 0; s < region.within.size(); ++s) {
+        const std::string at =
+            region.within.size() > 1 ? format("{}.within.{}", key, s) : format("{}.within", key);
+        try {
+          const std::vector<int> more =
+              solids::select_elements(where_ + "." + at, plan_.mesh, {region.within[s]});
+          elements.insert(elements.end(), more.begin(), more.end());
+        } catch (const InputError& e) {
+          fault(at, e.what_is_wrong(), e.hint());
+        }
+      }
+      for (const int e : elements) {
+        if (e < 0 || e >= static_cast<int>(part.size())) {
+          fault(key + ".elements", format("element {} does not exist", e),
+                format("The mesh has {} elements; the first is 0", part.size()));
+          break;
+        }
+        int& own = part[static_cast<std::size_t>(e)];
+        if (own != 0 && own != static_cast<int>(k) + 1) {
+          fault(key,
+                format("element {} is in '{}' already", e,
+                       solid_.regions[static_cast<std::size_t>(own - 1)].name),
+                "An element has one material: choose regions without common elements");
+          break;
+        }
+        own = static_cast<int>(k) + 1;
+      }
+    }
+    return part;
+  }
+
+  /// Chooses material, density and kind of element of each block; false after an error.
+  bool choose_materials() {
+    solids::SplitBlocks split;
+    if (solid_.regions.empty()) {
+      split.parts.assign(plan_.mesh.blocks.size(), 0);
+    } else {
+      split = solids::split_blocks(plan_.mesh, parts_by_element());
+    }
+    std::vector<std::optional<int>> materials{material_of("material", solid_.material)};
+    for (const RegionSpec& region : solid_.regions)
+      materials.push_back(material_of(format("regions.{}.material", region.name), region.material));
+    for (std::size_t k = 0; k < materials.size(); ++k) {
+      if (!materials[k]) return false;
+      const RegionSpec* region = k == 0 ? nullptr : &solid_.regions[k - 1];
+      const std::string key = region ? format("regions.{}", region->name) : "";
+      const std::optional<double> given = region ? region->density : solid_.density;
+      const double density = given.value_or(material(*materials[k]).density);
+      if (!(density > 0.0))
+        fault(given ? (region ? key + ".density" : "density") : key,
+              format("the density is {:g} kg/m^3", density),
+              "Give the material or the solid a density above zero");
+      for (std::size_t b = 0; b < split.parts.size(); ++b) {
+        if (split.parts[b] != static_cast<int>(k)) continue;
+        plan_.materials.resize(split.parts.size());
+        plan_.densities.resize(split.parts.size());
+        plan_.materials[b] = *materials[k];
+        plan_.densities[b] = density;
+      }
+    }
+    return choose_elements(split.parts) && place_fibres(split.former);
+  }
+
+  [[nodiscard]] const MaterialSpec& material(int index) const {
+    return model_.materials[static_cast<std::size_t>(index)];
+  }
+
+  /// @param parts  By block.
+  bool choose_elements(const std::vector<int>& parts) {
+    for (std::size_t b = 0; b < plan_.mesh.blocks.size(); ++b) {
+      const RegionSpec* region =
+          parts[b] == 0 ? nullptr : &solid_.regions[static_cast<std::size_t>(parts[b] - 1)];
+      const bool own = region != nullptr && !region->element.empty();
+      const std::string key = own ? format("regions.{}.element", region->name) : "element";
+      const std::string& wanted = own ? region->element : solid_.element;
+      const std::string& type = plan_.mesh.blocks[b].type;
       try {
-        const bool uncoupled = solids::material_kind(material->type).uncoupled;
-        plan_.elements.push_back(
-            solids::choose_element(where_, solid_.element, block.type, uncoupled).name);
+        if (own && cell_of_element(wanted) != type)
+          throw InputError(key,
+                           format("'{}' has {} cells, but the region has {}", wanted,
+                                  cell_of_element(wanted), type),
+                           "Name an element of the region's cells, or leave it out");
+        const bool uncoupled = solids::material_kind(material(plan_.materials[b]).type).uncoupled;
+        plan_.elements.push_back(solids::choose_element(where_, wanted, type, uncoupled).name);
       } catch (const InputError& e) {
-        fault("element", e.what_is_wrong(), e.hint());
-        return;
+        fault(key, e.what_is_wrong(), e.hint());
+        return false;
       }
     }
     const auto& kinds = plan_.elements;
@@ -143,6 +227,38 @@ class SolidPlanner {
           format("{}: hex8_q1p0 is inaccurate in bending with one element through the thickness. "
                  "Use two or three.",
                  where_));
+    return true;
+  }
+
+  /// Gives each block its directions of fibres. @param former  Numbers of elements before they were
+  /// split by materials; empty: they are the same.
+  bool place_fibres(const std::vector<int>& former) {
+    plan_.fibres.resize(plan_.mesh.blocks.size());
+    if (solid_.fibre_directions.empty()) return true;
+    const auto count = static_cast<std::size_t>(plan_.mesh.element_count());
+    std::vector<std::size_t> families(count);
+    for (std::size_t e = 0; e < count; ++e) {
+      const std::size_t given = former.empty() ? e : static_cast<std::size_t>(former[e]);
+      const auto b = static_cast<std::size_t>(plan_.mesh.place(static_cast<int>(e)).block);
+      families[given] = material(plan_.materials[b]).fibres.size();
+    }
+    std::vector<std::size_t> first(count + 1, 0);
+    for (std::size_t e = 0; e < count; ++e) first[e + 1] = first[e] + families[e];
+    if (first[count] != solid_.fibre_directions.size()) {
+      fault("fibre_directions",
+            format("has {} directions, but the elements have {} families of fibres",
+                   solid_.fibre_directions.size(), first[count]),
+            "Give one direction for each family of each element, in the order of the elements");
+      return false;
+    }
+    for (std::size_t e = 0; e < count; ++e) {
+      const std::size_t given = former.empty() ? e : static_cast<std::size_t>(former[e]);
+      const auto b = static_cast<std::size_t>(plan_.mesh.place(static_cast<int>(e)).block);
+      const auto at = solid_.fibre_directions.begin();
+      plan_.fibres[b].insert(plan_.fibres[b].end(), at + static_cast<std::ptrdiff_t>(first[given]),
+                             at + static_cast<std::ptrdiff_t>(first[given + 1]));
+    }
+    return true;
   }
 
   /// Whether there is a single layer of cells: every node lies on the boundary.

@@ -44,9 +44,12 @@ void append_part(Model& whole, Model part, const std::string& prefix) {
     if (!load.joint_2.empty()) load.joint_2 = prefix + load.joint_2;
     for (CoordinateSpec& other : load.others) other.joint = prefix + other.joint;
     if (load.solid >= 0) load.solid += solids;
+    for (int& solid : load.end_solids)
+      if (solid >= 0) solid += solids;
   }
   for (SolidSpec& solid : part.solids) {
     solid.material = prefix + solid.material;
+    for (RegionSpec& region : solid.regions) region.material = prefix + region.material;
     for (BondSpec& bond : solid.bonded) shift(bond.body);
   }
   for (BeamSpec& beam : part.beams) {

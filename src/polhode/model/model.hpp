@@ -123,6 +123,9 @@ struct LoadSpec {
       vector;             ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
   TimeFunctionPtr value;  ///< Pressure [Pa], or the function of a motor.
   int solid = -1;         ///< Of a load on a solid: index into Model::solids.
+  /// Of a spring between two points: the solid of each, in whose mesh's own coordinates Z_a or Z_b
+  /// then is; -1: a body or the ground. `solid` is one of them.
+  std::array<int, 2> end_solids{-1, -1};
   std::vector<solids::Selection> selection;  ///< Its nodes or faces; empty: all.
   bool follower = false;           ///< A pressure that follows the surface and its present area.
   std::string keeps = "momentum";  ///< Of a follower pressure: whether momentum or work is exact.
@@ -139,6 +142,11 @@ struct LoadSpec {
   /// the coordinate of a motor or the distance of an axial force.
   LoadFunction of_motion{};
   PartAxes part_axes{};  ///< Axes of of_motion.
+
+  /// Whether it connects a point of a solid to another point.
+  [[nodiscard]] bool has_end_on_solid() const { return end_solids[0] >= 0 || end_solids[1] >= 0; }
+  /// Whether it has numbers to record: all but loads on the nodes and faces of solids.
+  [[nodiscard]] bool reports() const { return solid < 0 || has_end_on_solid(); }
 };
 
 struct OutputSpec {

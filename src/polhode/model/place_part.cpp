@@ -174,8 +174,9 @@ class Placer {
     const std::string where = format("loads.{}", load.name);
     constexpr Signs kAgainst{-1.0, -1.0, -1.0};
     const bool axial_vector = load.solid < 0 && load_kind(load.type).vector == "moment";
-    load.Z_a = carried(load.a, load.Z_a);
-    load.Z_b = carried(load.b, load.Z_b);
+    // Points of solids are in the coordinates of their meshes.
+    if (load.end_solids[0] < 0) load.Z_a = carried(load.a, load.Z_a);
+    if (load.end_solids[1] < 0) load.Z_b = carried(load.b, load.Z_b);
     load.R_a = carried(load.a, load.R_a, kAgainst);
     load.R_b = carried(load.b, load.R_b, kAgainst);
     const PartAxes here{r_, A_, S_};

@@ -47,6 +47,17 @@ struct PrescribedSpec {
   TimeVector displacement;  ///< World components [m]; null: this component is free.
 };
 
+/// Elements of a solid with a material of their own.
+struct RegionSpec {
+  std::string name;
+  SourceLocation place;
+  std::string material;                   ///< Name of a material of the model.
+  std::string element;                    ///< A kind of element; "": that of the solid.
+  std::optional<double> density;          ///< Instead of the material's [kg/m^3].
+  std::vector<solids::Selection> within;  ///< Elements of which these contain all nodes.
+  std::vector<int> elements;              ///< Numbers of elements of the mesh, the first is 0.
+};
+
 /// Description of a deformable solid.
 struct SolidSpec {
   std::string name;
@@ -56,6 +67,10 @@ struct SolidSpec {
   std::string material;  ///< Name of a material of the model.
   std::string stress = "conserving";  ///< conserving | midpoint.
   std::optional<double> density;      ///< Instead of the material's [kg/m^3].
+  std::vector<RegionSpec> regions;    ///< Elements with another material.
+  /// Instead of the materials': by element of the mesh and family of its material, along the mesh's
+  /// axes; empty: those of the materials.
+  std::vector<Vec3> fibre_directions;
   std::vector<BondSpec> bonded;
   std::vector<PrescribedSpec> prescribed;
   ContactSideSpec contact;                         ///< Contact settings of its surface.

@@ -71,7 +71,7 @@ ProbeTarget find_target(const Simulation& simulation, const ProbeSpec& spec,
     return {.spec = spec, .index = simulation.contact_pair(spec.pair[0], spec.pair[1])};
   if (spec.kind == "load") {
     const int load = model.load_index(spec.target);
-    if (model.loads[static_cast<std::size_t>(load)].solid >= 0)
+    if (!model.loads[static_cast<std::size_t>(load)].reports())
       throw InputError(where, format("records '{}', a load on a solid", spec.target),
                        "Record an interface or a point of the solid, or a load on bodies");
     return {.spec = spec, .index = load};

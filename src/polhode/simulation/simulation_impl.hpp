@@ -389,11 +389,15 @@ struct Simulation::Impl {
   SolidWatch& solid_watch(int solid) {
     while (solid_watches.size() <= static_cast<std::size_t>(solid)) {
       const SolidMap& next = map.solids[solid_watches.size()];
-      double volume = 0.0;
-      for (const solids::SolidElements* elements : next.elements) volume += elements->volume();
-      const solids::LinearModuli moduli = next.elements.front()->material().linear();
-      solid_watches.push_back({solids::NodalRecovery(next.plan.mesh, moduli),
-                               moduli.shear * volume * kRoundedStrain * kRoundedStrain});
+      double stiffness = 0.0;
+      std::vector<solids::LinearModuli> moduli;
+      for (const solids::SolidElements* elements : next.elements) {
+        moduli.push_back(elements->material().linear());
+        stiffness += moduli.back().shear * elements->volume();
+      }
+      solid_watches.push_back(
+          {solids::NodalRecovery(next.plan.mesh, next.plan.materials, std::move(moduli)),
+           stiffness * kRoundedStrain * kRoundedStrain});
     }
     return solid_watches[static_cast<std::size_t>(solid)];
   }

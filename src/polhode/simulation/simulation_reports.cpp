@@ -6,6 +6,7 @@
 #include <polhode/core/assert.hpp>
 #include <polhode/dynamics/point_motion.hpp>
 #include <polhode/equations/node_motion.hpp>
+#include <polhode/loads/pair_on_nodes.hpp>
 #include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/simulation/simulation_impl.hpp>
 
@@ -160,6 +161,16 @@ std::vector<double> Simulation::load(int load) const {
   const System& system = impl_->system;
   if (acts_on_beam(load_kind(model().loads[load].type)))
     return slide_report(system, impl_->projected, now, model().loads[load].name);
+  if (const auto found = impl_->map.load_on_nodes.find(load);
+      found != impl_->map.load_on_nodes.end()) {
+    State projected = impl_->projected;
+    bond_nodes(system, projected);
+    StepContext still;
+    still.t_n = impl_->state.t;
+    const bool grows = impl_->statics && !model().analysis.history;
+    if (grows) still.load_factor = impl_->state.t;
+    return found->second->report(node_instant(system, projected, still));
+  }
   const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
   const LoadKind& kind = load_kind(model().loads[load].type);
   std::vector<double> report = kind.report(system.group(ref.group), ref.item, impl_->seen(ref));

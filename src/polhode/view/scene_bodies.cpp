@@ -196,10 +196,12 @@ void add_connections(Json& manifest, const io::ResultsReader& results, const Mod
     if (model != nullptr)
       if (const LoadSpec* load = named(model->loads, load_names[k], k)) {
         entry["line"] = load->place.line;
-        entry["a"] = load->a;
-        entry["b"] = load->b;
-        entry["Za"] = json_of(load->Z_a);
-        entry["Zb"] = json_of(load->Z_b);
+        if (!load->has_end_on_solid()) {  // else it is not drawn: its points are not bodies'
+          entry["a"] = load->a;
+          entry["b"] = load->b;
+          entry["Za"] = json_of(load->Z_a);
+          entry["Zb"] = json_of(load->Z_b);
+        }
         if (!load->joint.empty()) entry["joint"] = load->joint;
         for (const char* key : {"stiffness", "damping"})
           if (const auto value = load->parameters.find(key); value != load->parameters.end())

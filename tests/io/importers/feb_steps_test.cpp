@@ -105,6 +105,41 @@ TEST_F(FebSteps, CurvesAreCutToTheStep) {
   }
 }
 
+/// A block that lies on a plate, with contact of a kind between them in the first of two steps.
+std::string on_a_plate(const std::string& type, const std::string& analysis = "DYNAMIC") {
+  const std::string touch =
+      tag("Contact", tag("contact", "", "name='c' type='" + type + "' surface_pair='pair'"));
+  const auto part = [&](int steps, const std::string& inside) {
+    return tag("step", control(analysis, steps, 0.01) + inside);
+  };
+  return feb(
+      tag("Material", rigid(1, "plate") + rigid(2, "bar")) +
+      tag("Mesh", block(1, "part", Vec3(-0.5, -0.1, -0.2), Vec3(0.5, 0.1, 0.2)) +
+                      block(101, "floor", Vec3(-1, -1, -0.4), Vec3(1, 1, -0.2)) +
+                      tag("Surface", tag("quad4", "105,106,107,108", "id='1'"), "name='top'") +
+                      tag("Surface", tag("quad4", "1,4,3,2", "id='1'"), "name='bottom'") +
+                      tag("SurfacePair", tag("primary", "bottom") + tag("secondary", "top"),
+                          "name='pair'")) +
+      tag("MeshDomains", domain("part", "bar") + domain("floor", "plate")) +
+      tag("Rigid", fixed("plate", "111111")) +
+      tag("Loads", typed("body_load", "const", tag("z", "10"))) +
+      tag("Step", part(100, touch) + part(50, "")));
+}
+
+// It rests for a second and falls for another half.
+TEST_F(FebSteps, ContactOfRigidBodiesActsInItsStepAlone) {
+  const Model m = read(on_a_plate("sliding-elastic"));
+  for (const double step : {0.01, 0.001}) {
+    const double rest = run(m, 1.0, step).body("bar").r.z();
+    EXPECT_NEAR(rest, 0.0, 0.02) << step;
+    EXPECT_NEAR(run(m, 1.5, step).body("bar").r.z() - rest, -1.25, 0.02) << step;
+  }
+  EXPECT_THAT(fault(on_a_plate("tied-elastic")),
+              HasSubstr("contact of one step of several is not read, except between rigid bodies"));
+  EXPECT_THAT(fault(on_a_plate("sliding-elastic", "STATIC")),
+              HasSubstr("contact of one step of several is not read, except between rigid bodies"));
+}
+
 TEST_F(FebSteps, SettingsOfStepsAreMerged) {
   const auto steps = [](const std::string& a, const std::string& b) {
     return two_bodies("", "", tag("Step", a + b));

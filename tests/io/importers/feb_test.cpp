@@ -379,7 +379,7 @@ TEST_F(Feb, WhatIsNotReadIsSaid) {
   EXPECT_THAT(notes(two_bodies(control(), "", tag("Odd", ""))),
               HasSubstr("<Odd> in <febio_spec> is unknown"));
   EXPECT_THAT(fault(two_bodies(control(), typed("rigid_load", "rigid_cable", ""))),
-              HasSubstr("of type 'rigid_cable' is not read"));
+              HasSubstr("the rigid_cable has no points"));
   EXPECT_THAT(fault(feb(control() + tag("Material", typed("material", "biphasic", "")))),
               HasSubstr("of type 'biphasic' is not read"));
 }

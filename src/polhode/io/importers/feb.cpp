@@ -40,14 +40,16 @@ class FebReader {
     if (const Element* materials = file_.child(root, "Material"))
       read_feb_materials(model_, *materials);
     model_.solids.assemble();
+    each("MeshData", In::file, [&](const Element& e) { model_.solids.read_mesh_data(e); });
     each("Boundary", In::file, [&](const Element& e) { model_.solids.read_boundary(e); });
+    model_.solids.add_trusses();
     each("Rigid", In::step, [&](const Element& e) { read_feb_rigid(model_, e); });
     each("Loads", In::values, [&](const Element& e) { read_feb_loads(model_, e); });
     each("Discrete", In::step, [&](const Element& e) { model_.solids.read_discrete(e); });
     each("Initial", In::start, [&](const Element& e) { model_.solids.read_initial(e); });
     SourceNode probes = make.map();
     each("Output", In::values, [&](const Element& e) { read_feb_output(model_, e, probes); });
-    each("Contact", In::file, [&](const Element& e) { model_.solids.read_contact(e); });
+    each("Contact", In::step, [&](const Element& e) { model_.solids.read_contact(e); });
     refuse_others();
     make.put(result, "format", make.text("1"));
     if (!model_.gravity.isZero(0.0)) make.put(result, "gravity", make.vector(model_.gravity));
@@ -99,7 +101,7 @@ class FebReader {
   }
 
   void refuse_others() {
-    for (const char* name : {"Constraints", "MeshAdaptor", "MeshData", "Code", "Include"})
+    for (const char* name : {"Constraints", "MeshAdaptor", "Code", "Include"})
       model_.each_section(name, FebIn::step, [&](const Element& e) {
         if (e.FirstChildElement() != nullptr || !XmlFile::content(e).value_or("").empty())
           file_.refuse(e, format("<{}> is not read", name), "Leave it out.");

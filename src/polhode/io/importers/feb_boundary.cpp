@@ -151,6 +151,11 @@ void FebSolids::read_nodal_load(const Element& e) {
   if (nodes == nullptr) return;
   const NodeBuilder make = file.make(e);
   std::set<int> left(nodes->begin(), nodes->end());
+  if (left.size() != nodes->size()) {
+    file.refuse(e, "a nodal load on a node twice, or on both nodes of a tied pair, is not read",
+                "Load each of them once.");
+    return;
+  }
   for (const FebSolid& solid : solids_) {
     std::vector<int> own;
     for (const int n : *nodes)

@@ -30,6 +30,29 @@ bool is_convex(const FebMesh& mesh, const FebBody& body) {
   }
 }
 
+/// Distance of coinciding nodes, as a part of the extent of their surface.
+constexpr double kSameNode = 1e-6;
+
+/// Nodes of a with the node of b at the same place, by their numbers.
+std::map<int, int> twins_of(const std::vector<Vec3>& X, const std::set<int>& a,
+                            const std::set<int>& b) {
+  const auto at = [&](int node) -> const Vec3& { return X[static_cast<std::size_t>(node)]; };
+  Vec3 least = at(*a.begin()), most = least;
+  for (const int n : a) {
+    least = least.cwiseMin(at(n));
+    most = most.cwiseMax(at(n));
+  }
+  const double tolerance = kSameNode * (most - least).norm();
+  std::multimap<double, int> by_x;
+  for (const int n : b) by_x.emplace(at(n).x(), n);
+  std::map<int, int> twins;
+  for (const int n : a)
+    for (auto k = by_x.lower_bound(at(n).x() - tolerance);
+         k != by_x.end() && k->first <= at(n).x() + tolerance; ++k)
+      if ((at(k->second) - at(n)).norm() <= tolerance) twins.emplace(n, k->second);
+  return twins;
+}
+
 /// Names as a list of a model file.
 SourceNode name_nodes(const NodeBuilder& make, const std::set<std::string>& names) {
   SourceNode list = make.list();
@@ -58,13 +81,49 @@ FebSolids::Side FebSolids::side_of(const std::string& surface) {
   return side;
 }
 
+void FebSolids::merge_ties() {
+  FebMesh& mesh = model_.mesh;
+  std::set<int> soft;
+  for (const FebPart& part : mesh.parts)
+    if (materials_.contains(part.material)) soft.insert(part.nodes.begin(), part.nodes.end());
+  const auto nodes_of = [&](const std::string& surface) {
+    std::set<int> nodes;
+    if (const auto found = mesh.surfaces.find(surface); found != mesh.surfaces.end())
+      for (const std::vector<int>& facet : found->second) nodes.insert(facet.begin(), facet.end());
+    return nodes;
+  };
+  const auto is_soft = [&](const std::set<int>& nodes) {
+    return !nodes.empty() &&
+           std::all_of(nodes.begin(), nodes.end(), [&](int n) { return soft.contains(n); });
+  };
+  model_.each_section("Contact", FebIn::values, [&](const Element& section) {
+    if (model_.step != nullptr) return;
+    for (const Element* e = section.FirstChildElement("contact"); e != nullptr;
+         e = e->NextSiblingElement("contact")) {
+      const std::string type = e->Attribute("type") == nullptr ? "" : e->Attribute("type");
+      const char* name = e->Attribute("surface_pair");
+      if (!type.starts_with("tied-") || name == nullptr) continue;
+      const auto pair = mesh.surface_pairs.find(std::string_view(name));
+      if (pair == mesh.surface_pairs.end()) continue;
+      const std::set<int> a = nodes_of(pair->second.first), b = nodes_of(pair->second.second);
+      if (!is_soft(a) || !is_soft(b)) continue;
+      const auto twins = twins_of(mesh.nodes, a, b);
+      if (twins.size() != std::min(a.size(), b.size())) continue;
+      mesh.replace(twins);
+      merged_.insert(e);
+    }
+  });
+}
+
 void FebSolids::tie(const Element& e, const Side& a, const Side& b) {
+  if (merged_.contains(&e)) return;
   const Side& soft = a.solid != nullptr ? a : b;
   const Side& rigid = a.solid != nullptr ? b : a;
   if (soft.solid == nullptr || rigid.body == nullptr) {
-    model_.file.refuse(e, "a tie between two solids, or two rigid bodies, is not read",
-                       soft.solid != nullptr ? "Let the meshes share nodes and have one material."
-                                             : "Connect rigid bodies by a rigid lock.");
+    model_.file.refuse(
+        e, "a tie between two solids whose nodes do not coincide, or two rigid bodies, is not read",
+        soft.solid != nullptr ? "Let all nodes of one surface coincide with nodes of the other."
+                              : "Connect rigid bodies by a rigid lock.");
     return;
   }
   for (const std::vector<int>& facet : *soft.facets)
@@ -125,6 +184,14 @@ void FebSolids::read_contact(const Element& section) {
           "Give surfaces of <Surface> that belong to one part.");
       continue;
     }
+    if (model_.step != nullptr &&
+        (ties || a.solid != nullptr || b.solid != nullptr || !model_.dynamic)) {
+      file.refuse(*e,
+                  "contact of one step of several is not read, except between rigid bodies in "
+                  "dynamics",
+                  "Put it outside the steps.");
+      continue;
+    }
     if (ties) {
       tie(*e, a, b);
       continue;
@@ -140,7 +207,10 @@ void FebSolids::read_contact(const Element& section) {
     if (friction > 0.0 && !model_.dynamic)
       file.refuse(*e, "statics has no friction between surfaces",
                   "Set fric_coeff to 0, or the analysis to DYNAMIC.");
-    const std::string group = file.name(*e, name, contact_names_);
+    // Events name contacts, joints and loads alike.
+    const std::string group =
+        file.name(*e, name, model_.steps.size() > 1 ? model_.joint_names : contact_names_);
+    if (model_.step != nullptr) model_.switched.push_back(group);
     touch(*e, a, group + "_primary", group + "_secondary");
     touch(*e, b, group + "_secondary", group + "_primary");
     const NodeBuilder make = file.make(*e);

@@ -98,14 +98,90 @@ SpringLaw read_law(FebFile& file, const Element& e) {
 
 std::string FebSolids::holder(int node) const {
   if (const auto body = attached_.find(node); body != attached_.end()) return body->second;
+  for (const FebSolid& solid : solids_)
+    if (solid.place.contains(node)) return solid.name;
   const auto held = held_.find(node);
-  const bool in_solid = std::any_of(solids_.begin(), solids_.end(),
-                                    [&](const FebSolid& s) { return s.place.contains(node); });
   const bool still =
       held != held_.end() && std::all_of(held->second.begin(), held->second.end(), [&](int h) {
         return h >= 0 && !holds_[static_cast<std::size_t>(h)].prescribed;
       });
-  return still && !in_solid ? "ground" : "";
+  return still ? "ground" : "";
+}
+
+bool FebSolids::is_solid(const std::string& name) const {
+  return std::any_of(solids_.begin(), solids_.end(),
+                     [&](const FebSolid& solid) { return solid.name == name; });
+}
+
+bool FebSolids::put_ends(const Element& e, const std::string& what, const std::array<int, 2>& ends,
+                         SourceNode& load) {
+  FebFile& file = model_.file;
+  const NodeBuilder make = file.make(e);
+  SourceNode names = make.list(), points = make.list();
+  for (const int node : ends) {
+    const std::string on = holder(node);
+    if (on.empty()) {
+      file.refuse(e, format("{} has an end that is on no rigid body and no solid", what),
+                  "Attach the node to one of them, or fix it.");
+      return false;
+    }
+    if (is_solid(on) && model_.step != nullptr) {
+      file.refuse(e, format("{} has an end on a solid, and is in one step of several", what),
+                  "Put it outside the steps, or end it on a rigid body.");
+      return false;
+    }
+    names.children.push_back(make.text(on));
+    points.children.push_back(make.vector(model_.mesh.nodes[static_cast<std::size_t>(node)]));
+  }
+  make.put(load, "bodies", std::move(names));
+  make.put(load, "at", std::move(points));
+  return true;
+}
+
+void FebSolids::add_trusses() {
+  FebFile& file = model_.file;
+  for (const FebPart& part : model_.mesh.parts) {
+    const auto truss = trusses_.find(part.material);
+    if (truss == trusses_.end()) continue;
+    if (part.size != 2) {
+      file.refuse(*part.at, format("{} elements are no linear trusses", part.type),
+                  "Use line2 elements.");
+      continue;
+    }
+    if (!(part.area > 0.0)) {
+      file.xml.fault(*part.at, format("the trusses {} have no cross section", quote(part.name)),
+                     "Give <cross_sectional_area> in their domain.");
+      continue;
+    }
+    const NodeBuilder make = file.make(*part.at);
+    for (std::size_t k = 0; k + 1 < part.nodes.size(); k += 2) {
+      const std::array<int, 2> ends{part.nodes[k], part.nodes[k + 1]};
+      const double length = (model_.mesh.nodes[static_cast<std::size_t>(ends[1])] -
+                             model_.mesh.nodes[static_cast<std::size_t>(ends[0])])
+                                .norm();
+      if (!(length > 0.0)) {
+        file.xml.fault(*part.at, format("a truss of {} has no length", quote(part.name)),
+                       "Give two nodes apart.");
+        break;
+      }
+      // The Kirchhoff stress is E ln(l/L): with the volume A L its energy is half of E A L ln².
+      SourceNode load = make.map();
+      make.put(load, "type", make.text("potential"));
+      if (!put_ends(*part.at, format("a truss of {}", quote(part.name)), ends, load)) break;
+      if (const std::string a = holder(ends[0]); a == holder(ends[1]) && !is_solid(a)) continue;
+      const double stiffness = truss->second.modulus * part.area * length;
+      make.put(load, "energy",
+               make.text(format("{}*log(l/{})^2", make.number(0.5 * stiffness).text,
+                                make.number(length).text)));
+      model_.add_load(
+          *part.at,
+          part.nodes.size() == 2 ? part.name : format("{}_{}", part.name, part.ids[k / 2]),
+          std::move(load));
+    }
+    if (model_.dynamic && truss->second.density > 0.0)
+      file.approximated(*part.at,
+                        format("the trusses {} have no mass in the model", quote(part.name)));
+  }
 }
 
 void FebSolids::read_discrete(const Element& section) {
@@ -134,26 +210,15 @@ void FebSolids::read_discrete(const Element& section) {
       continue;
     }
     if (!law->second.sound) continue;
-    const NodeBuilder make = file.make(*e);
     for (std::size_t k = 0; k < set->second.size(); ++k) {
       const std::array<int, 2>& ends = set->second[k];
-      const std::string a = holder(ends[0]), b = holder(ends[1]);
-      if (a.empty() || b.empty()) {
-        file.refuse(*e,
-                    format("a spring of {} has an end that is on no rigid body", quote(set_name)),
-                    "Attach the node to a rigid body.");
-        break;
-      }
-      if (a == b) {
+      if (const std::string a = holder(ends[0]);
+          !a.empty() && a == holder(ends[1]) && !is_solid(a)) {
         file.ignored.add(*e, "a spring within one rigid body", "moves nothing");
         continue;
       }
       SourceNode load = law->second.load;
-      const auto at = [&](int node) {
-        return make.vector(model_.mesh.nodes[static_cast<std::size_t>(node)]);
-      };
-      make.put(load, "bodies", make.list({make.text(a), make.text(b)}));
-      make.put(load, "at", make.list({at(ends[0]), at(ends[1])}));
+      if (!put_ends(*e, format("a spring of {}", quote(set_name)), ends, load)) break;
       model_.add_load(*e, set->second.size() == 1 ? set_name : format("{}_{}", set_name, k + 1),
                       std::move(load));
     }

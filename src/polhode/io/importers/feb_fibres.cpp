@@ -87,6 +87,7 @@ bool FebLaw::put_direction(const Element& e, const Mat3& outer, SourceNode fibre
   const std::optional<Vec3> a = fibre_direction(e, outer);
   if (!a) return false;
   make_.put(fibre, "direction", make_.direction(*a));
+  local_.push_back(*a);
   fibres_.push_back(std::move(fibre));
   return true;
 }
@@ -136,8 +137,9 @@ bool FebLaw::put_arterial_fibres(const Element& e, const Mat3& outer) {
   for (const double side : {1.0, -1.0}) {
     SourceNode fibre =
         fibre_node(e, "exponential", {{"xi", "k1"}, {"alpha", "k2"}, {"dispersion", "kappa"}});
-    const Vec3 a(std::cos(gamma), side * std::sin(gamma), 0.0);
-    make_.put(fibre, "direction", make_.direction(Vec3(outer * *own * a)));
+    const Vec3 a = outer * *own * Vec3(std::cos(gamma), side * std::sin(gamma), 0.0);
+    make_.put(fibre, "direction", make_.direction(a));
+    local_.push_back(a);
     fibres_.push_back(std::move(fibre));
     isochoric_.push_back(true);
   }

@@ -208,12 +208,13 @@ std::vector<std::int64_t> FebFile::integers(const Element& e) {
   return list;
 }
 
-std::optional<std::int64_t> FebFile::id(const Element& e) {
-  const std::string text = xml.required_text(e, "id");
+std::optional<std::int64_t> FebFile::id(const Element& e, const char* key) {
+  const std::string text = xml.required_text(e, key);
   if (text.empty()) return std::nullopt;
   const auto value = whole_text<std::int64_t>(text);
   if (value && *value >= 0) return value;
-  xml.fault(e, format("'id' is {}, not a whole number", quote(text)), "Give a number from 1 on.");
+  xml.fault(e, format("'{}' is {}, not a whole number", key, quote(text)),
+            "Give a number from 1 on.");
   return std::nullopt;
 }
 

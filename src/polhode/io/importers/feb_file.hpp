@@ -65,7 +65,7 @@ class FebFile {
   /// Whole numbers in the text of a tag: "1, 2, 5:8, 10:20:2"; error if there are too many.
   std::vector<std::int64_t> integers(const Element& e);
   /// Whole number in an attribute that must be there; nothing after an error.
-  std::optional<std::int64_t> id(const Element& e);
+  std::optional<std::int64_t> id(const Element& e, const char* key = "id");
   /// Load controller of a tag.
   std::optional<int> controller(const Element& e);
 

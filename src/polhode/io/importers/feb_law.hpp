@@ -24,6 +24,9 @@ class FebLaw {
   std::optional<SourceNode> read(const std::string& type);
   /// Whether it is of an uncoupled type, of which hexahedra are three-field elements.
   [[nodiscard]] bool uncoupled() const { return uncoupled_ && !sum_of_coupled_; }
+  /// Directions of its fibres, family by family, in the axes of its own <mat_axis>.
+  [[nodiscard]] const std::vector<Vec3>& local_directions() const { return local_; }
+  [[nodiscard]] const Mat3& own_axes() const { return own_; }
 
  private:
   /// A law of fibres; null if the type is none.
@@ -58,6 +61,8 @@ class FebLaw {
   NodeBuilder make_;
   SourceNode node_;
   std::vector<SourceNode> fibres_;
+  std::vector<Vec3> local_;      ///< Their directions: of the world, until all are read.
+  Mat3 own_ = Mat3::Identity();  ///< Axes of the material as a whole.
   std::vector<bool> isochoric_;  ///< By family, also those without stiffness.
   bool uncoupled_ = false, sum_of_coupled_ = false;
   double bulk_ = 0.0;  ///< Of an uncoupled material [Pa].

@@ -178,6 +178,8 @@ std::optional<SourceNode> FebLaw::read(const std::string& type) {
   const bool mixture = type == "solid mixture" || type == "uncoupled solid mixture";
   if (!(mixture ? put_mixture(at_, type) : put_matrix(at_, type, Mat3::Identity())))
     return std::nullopt;
+  if (!local_.empty()) own_ = axes(at_).value_or(Mat3::Identity());
+  for (Vec3& direction : local_) direction = own_.transpose() * direction;
   if (uncoupled_) make_.put(node_, "bulk_modulus", make_.number(bulk_));
   if (fibres_.size() == 1) make_.put(node_, "fibre", std::move(fibres_[0]));
   if (fibres_.size() > 1) make_.put(node_, "fibre", make_.list(std::move(fibres_)));
@@ -191,6 +193,14 @@ void FebSolids::read_material(const XmlFile::Element& e, const std::string& type
   const std::string given = file.xml.text(e, "name").value_or("");
   const auto id = file.id(e);
   const std::string name = given.empty() ? format("material{}", id.value_or(0)) : given;
+  if (type == "linear truss") {
+    static_cast<void>(file.number(e, "v"));  // the area, which no force depends on
+    trusses_[name] = {file.number(e, "E").value_or(0.0), file.number(e, "density").value_or(1.0)};
+    if (!(trusses_[name].modulus > 0.0))
+      file.xml.fault(e, format("<E> of {} is {}", quote(name), trusses_[name].modulus),
+                     "Give a value above zero.");
+    return;
+  }
   FebLaw law(file, e, name);
   std::optional<SourceNode> node = law.read(type);
   if (!node) return;
@@ -201,6 +211,8 @@ void FebSolids::read_material(const XmlFile::Element& e, const std::string& type
   FebMaterial material;
   material.node = std::move(*node);
   material.uncoupled = law.uncoupled();
+  material.fibres = law.local_directions();
+  material.axes = law.own_axes();
   material.name = file.name(e, name, material_names_);
   materials_.emplace(name, std::move(material));
 }

@@ -84,11 +84,13 @@ class MeshReader {
                        "Mesh the part with solid elements, or make it rigid.");
           continue;
         }
-        if (part != mesh_.parts.end())
+        if (part != mesh_.parts.end()) {
           part->material = material;
-        else if (!name.empty())
+          part->area = file_.number(*e, "cross_sectional_area").value_or(0.0);
+        } else if (!name.empty()) {
           file_.xml.fault(*e, format("there are no elements {}", quote(name)),
                           "Give the name of an <Elements>.");
+        }
         domains_.push_back(e);
       }
   }
@@ -215,6 +217,22 @@ class MeshReader {
 bool FebPart::is_solid() const {
   return type.starts_with("hex") || type.starts_with("tet") || type.starts_with("penta") ||
          type.starts_with("pyra");
+}
+
+void FebMesh::replace(const std::map<int, int>& twins) {
+  std::vector<int> by(nodes.size());
+  for (std::size_t k = 0; k < by.size(); ++k) by[k] = static_cast<int>(k);
+  for (const auto& [from, to] : twins) by[static_cast<std::size_t>(from)] = to;
+  const auto in = [&](auto& list) {
+    for (int& node : list) node = by[static_cast<std::size_t>(node)];
+  };
+  for (FebPart& part : parts) in(part.nodes);
+  for (auto& [name, set] : node_sets) in(set);
+  for (auto& [name, facets] : surfaces)
+    for (std::vector<int>& facet : facets) in(facet);
+  for (auto& [name, pairs] : discrete_sets)
+    for (std::array<int, 2>& ends : pairs) in(ends);
+  for (auto& [label, node] : place) node = by[static_cast<std::size_t>(node)];
 }
 
 FebMesh read_feb_mesh(FebFile& file, const Element* mesh, const Element* domains) {

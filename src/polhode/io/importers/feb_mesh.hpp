@@ -24,6 +24,7 @@ struct FebPart {
   std::vector<int> nodes;         ///< Places in FebMesh::nodes, element by element.
   std::vector<std::int64_t> ids;  ///< Of the elements.
   std::string material;           ///< Of its domain; "" without one.
+  double area = 0.0;              ///< Of the cross section of trusses [m²].
 
   [[nodiscard]] bool is_solid() const;
 };
@@ -39,6 +40,9 @@ struct FebMesh {
   std::map<std::string, std::vector<std::int64_t>, std::less<>> element_sets;
   std::map<std::string, std::pair<std::string, std::string>, std::less<>> surface_pairs;
   std::map<std::string, std::vector<std::array<int, 2>>, std::less<>> discrete_sets;
+
+  /// Puts nodes in place of others everywhere. @param twins  The new one by the old one.
+  void replace(const std::map<int, int>& twins);
 };
 
 /// Reads <Mesh> and <MeshDomains>.

@@ -74,6 +74,7 @@ struct FebModel {
   Vec3 gravity = Vec3::Zero();
   SourceNode joints, loads;
   std::set<std::string> joint_names, load_names;
+  std::vector<std::string> switched;  ///< Contacts of the step that is read.
   /// Kind, "joint" or "load", and name of each connector; "" if it became none.
   std::vector<std::pair<std::string, std::string>> connectors;
 

@@ -87,6 +87,7 @@ class RigidReader {
     if (type == "rigid_follower_force" || type == "rigid_follower_moment")
       return read_follower(e, name, type == "rigid_follower_moment");
     if (type == "rigid_axial_force") return read_axial(e, name);
+    if (type == "rigid_cable") return read_cable(e, name);
     if (!type.empty()) unknown(e, type);
   }
 
@@ -208,6 +209,53 @@ class RigidReader {
                         make.vector(relative ? Vec3(b->com + rb) : rb)}));
     make.put(load, "pull", model_.curves.node(force));
     model_.add_load(e, name, std::move(load));
+  }
+
+  /// A cable of one tension through points of bodies, which a force of that size pulls at the last.
+  void read_cable(const Element& e, const std::string& name) {
+    struct Point {
+      const FebBody* body;
+      Vec3 at;
+    };
+    const FebValue force = file_.value(e, "force");
+    const Vec3 along = file_.direction(e, "force_direction", -Vec3::UnitZ());
+    const bool relative = file_.boolean(e, "relative", true);
+    std::vector<Point> points;
+    for (const char* tag : {"rigid_cable_point", "point"})
+      for (const Element* p : file_.xml.children(e, tag)) {
+        const FebBody* body = model_.body(*p, "rigid_body_id");
+        const Vec3 at = file_.vector(*p, "position").value_or(Vec3::Zero());
+        if (body == nullptr) return;
+        points.push_back({body, relative ? Vec3(body->com + at) : at});
+      }
+    if (points.empty()) {
+      file_.xml.fault(e, "the rigid_cable has no points", "Give <rigid_cable_point>.");
+      return;
+    }
+    const NodeBuilder make = file_.make(e);
+    SourceNode end = make.map();
+    make.put(end, "type", make.text("force"));
+    make.put(end, "body", make.text(points.back().body->name));
+    make.put(end, "at", make.vector(points.back().at));
+    SourceNode components = make.list();
+    for (int k = 0; k < 3; ++k) components.children.push_back(model_.curves.node(force, along[k]));
+    make.put(end, "force", std::move(components));
+    put_load(e, name + "_end", *points.back().body, std::move(end));
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const Point &a = points[k], &b = points[k + 1];
+      if (a.body == b.body || (a.body->is_fixed() && b.body->is_fixed())) continue;
+      SourceNode span = make.map();
+      make.put(span, "type", make.text("axial_force"));
+      make.put(span, "bodies", make.list({make.text(a.body->name), make.text(b.body->name)}));
+      make.put(span, "at", make.list({make.vector(a.at), make.vector(b.at)}));
+      make.put(span, "pull", model_.curves.node(force));
+      model_.add_load(e, format("{}_{}", name, k + 1), std::move(span));
+    }
+    if (std::any_of(points.begin(), points.end(),
+                    [](const Point& p) { return !p.body->is_fixed(); }))
+      file_.approximated(e,
+                         "the forces of the cable act at points that turn with their bodies, where "
+                         "FEBio's moments have the arms of the start");
   }
 
   FebModel& model_;

@@ -31,8 +31,44 @@ std::vector<std::vector<int>> cells_of(const FebSolid& solid) {
 
 }  // namespace
 
+void FebSolids::choose_regions(FebSolid& solid) {
+  const auto is_hex8 = [](const FebPart* part) { return part->shape == "hex8"; };
+  const auto element = [&](const FebPart* part) -> std::string {
+    if (!is_hex8(part)) return "";
+    return materials_.at(part->material).uncoupled ? "hex8_q1p0" : "hex8_standard";
+  };
+  // Cells of one shape are those of the solid's element; of several, hexahedra are regions.
+  const auto other = std::find_if_not(solid.parts.begin(), solid.parts.end(), is_hex8);
+  const bool all_hex8 = other == solid.parts.end();
+  const FebPart* base = all_hex8 ? solid.parts.front() : *other;
+  solid.material = materials_.at(base->material).name;
+  solid.element = element(base);
+  std::set<std::string> taken;
+  std::map<std::pair<std::string, bool>, std::size_t> region_of;
+  int first = 0;
+  for (const FebPart* part : solid.parts) {
+    const int count = static_cast<int>(part->nodes.size()) / part->size, begin = first;
+    first += count;
+    if (part->material == base->material && is_hex8(part) == is_hex8(base)) continue;
+    const auto [found, is_new] =
+        region_of.try_emplace({part->material, is_hex8(part)}, solid.regions.size());
+    if (is_new) {
+      FebRegion region;
+      region.name = model_.file.name(*part->at, part->name, taken);
+      region.material = materials_.at(part->material).name;
+      if (element(part) != solid.element) region.element = element(part);
+      solid.regions.push_back(std::move(region));
+    }
+    for (int e = begin; e < first; ++e) solid.regions[found->second].elements.push_back(e);
+  }
+}
+
 void FebSolids::assemble() {
   FebFile& file = model_.file;
+  // Springs end on bodies and solids by their names.
+  solid_names_.insert("ground");
+  for (const FebBody& body : model_.bodies) solid_names_.insert(body.name);
+  merge_ties();
   std::vector<const FebPart*> parts;
   for (const FebPart& part : model_.mesh.parts) {
     if (!materials_.contains(part.material)) continue;
@@ -45,21 +81,9 @@ void FebSolids::assemble() {
   DisjointSets sets(parts.size());
   std::unordered_map<int, int> owner;
   for (int p = 0; p < static_cast<int>(parts.size()); ++p)
-    for (const int n : parts[static_cast<std::size_t>(p)]->nodes) {
-      const auto [found, is_new] = owner.try_emplace(n, p);
-      const FebPart& other = *parts[static_cast<std::size_t>(found->second)];
-      const FebPart& part = *parts[static_cast<std::size_t>(p)];
-      if (is_new || found->second == p) continue;
-      if (other.material == part.material) {
+    for (const int n : parts[static_cast<std::size_t>(p)]->nodes)
+      if (const auto [found, is_new] = owner.try_emplace(n, p); !is_new)
         sets.join(found->second, p);
-        continue;
-      }
-      file.refuse(*part.at,
-                  format("the parts {} and {} share nodes, but have two materials",
-                         quote(other.name), quote(part.name)),
-                  "Give them one material, or a rigid body between them.");
-      found->second = p;
-    }
   std::map<int, std::size_t> solid_of;
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const FebPart& part = *parts[static_cast<std::size_t>(p)];
@@ -67,27 +91,14 @@ void FebSolids::assemble() {
     if (is_new) {
       FebSolid solid;
       solid.name = file.name(*part.at, part.name, solid_names_);
-      solid.material = materials_.at(part.material).name;
       solid.at = part.at;
-      if (part.shape == "hex8")
-        solid.element = materials_.at(part.material).uncoupled ? "hex8_q1p0" : "hex8_standard";
       solids_.push_back(std::move(solid));
     }
     FebSolid& solid = solids_[found->second];
-    if (solid.parts.empty() || solid.parts.front()->shape == part.shape) {
-      solid.parts.push_back(&part);
-      solid.nodes.insert(solid.nodes.end(), part.nodes.begin(), part.nodes.end());
-      continue;
-    }
-    if (!solid.element.empty() || part.shape == "hex8")
-      file.approximated(*part.at,
-                        format("the hexahedra of {} have enhanced strains if the material "
-                               "is compressible, as its elements are of several kinds",
-                               quote(solid.name)));
-    solid.element.clear();
     solid.parts.push_back(&part);
     solid.nodes.insert(solid.nodes.end(), part.nodes.begin(), part.nodes.end());
   }
+  for (FebSolid& solid : solids_) choose_regions(solid);
   for (FebSolid& solid : solids_) {
     std::sort(solid.nodes.begin(), solid.nodes.end());
     solid.nodes.erase(std::unique(solid.nodes.begin(), solid.nodes.end()), solid.nodes.end());
@@ -169,6 +180,17 @@ SourceNode FebSolids::write_solid(const FebSolid& solid) {
   make.put(node, "mesh", std::move(mesh));
   if (!solid.element.empty()) make.put(node, "element", make.text(solid.element));
   make.put(node, "material", make.text(solid.material));
+  SourceNode regions = make.map();
+  for (const FebRegion& region : solid.regions) {
+    SourceNode entry = make.map(), list = make.list();
+    for (const int e : region.elements) list.children.push_back(make.text(format("{}", e)));
+    make.put(entry, "material", make.text(region.material));
+    if (!region.element.empty()) make.put(entry, "element", make.text(region.element));
+    make.put(entry, "elements", std::move(list));
+    make.put(regions, region.name, std::move(entry));
+  }
+  if (!regions.keys.empty()) make.put(node, "regions", std::move(regions));
+  put_fibres(solid, make, node);
   // Left out, it would move with the first body to which it is bonded.
   if (model_.dynamic)
     make.put(node, "velocity", make.vector(solid.velocity.value_or(Vec3::Zero())));

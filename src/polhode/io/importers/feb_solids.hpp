@@ -16,10 +16,19 @@ namespace polhode::io {
 struct FebModel;
 struct FebBody;
 
-/// A deformable solid: connected parts of the mesh with one material.
+/// Elements of a solid with another material or kind of element than the rest.
+struct FebRegion {
+  std::string name;      ///< In the model: that of its first part.
+  std::string material;  ///< In the model.
+  std::string element;   ///< Kind of element; "": that of the solid.
+  std::vector<int> elements;
+};
+
+/// A deformable solid: connected parts of the mesh.
 struct FebSolid {
   std::string name;      ///< In the model: that of its first part.
   std::string material;  ///< In the model.
+  std::vector<FebRegion> regions;
   const XmlFile::Element* at = nullptr;
   std::vector<const FebPart*> parts;
   std::vector<int> nodes;                  ///< Places in FebMesh::nodes, ascending.
@@ -36,6 +45,14 @@ struct FebMaterial {
   std::string name;  ///< In the model.
   bool uncoupled = false;
   SourceNode node;
+  std::vector<Vec3> fibres;      ///< Directions by family, in these axes.
+  Mat3 axes = Mat3::Identity();  ///< Of its <mat_axis>.
+};
+
+/// Data of one element in place of its material's.
+struct FebElementData {
+  std::optional<Mat3> axes;
+  std::optional<Vec3> fibre;
 };
 
 /// A boundary condition on displacements.
@@ -44,6 +61,12 @@ struct FebHold {
   const XmlFile::Element* at = nullptr;
   bool prescribed = false;         ///< Else fixed.
   std::array<FebValue, 3> values;  ///< By component.
+};
+
+/// A material of linear trusses.
+struct FebTruss {
+  double modulus = 0.0;  ///< [Pa]
+  double density = 0.0;  ///< [kg/m³]
 };
 
 /// The deformable solids of a file.
@@ -57,6 +80,10 @@ class FebSolids {
   void assemble();
   /// Reads <Boundary>.
   void read_boundary(const XmlFile::Element& section);
+  /// Reads <MeshData>: directions of fibres by element.
+  void read_mesh_data(const XmlFile::Element& section);
+  /// Makes springs of trusses.
+  void add_trusses();
   /// Reads <Discrete>: springs between nodes.
   void read_discrete(const XmlFile::Element& section);
   /// Reads <Initial>.
@@ -90,13 +117,24 @@ class FebSolids {
   };
   Side side_of(const std::string& surface);
   void tie(const XmlFile::Element& e, const Side& a, const Side& b);
+  /// Lets tied surfaces of deformable parts share their nodes where all nodes of one coincide with
+  /// nodes of the other.
+  void merge_ties();
   void touch(const XmlFile::Element& e, const Side& side, const std::string& own,
              const std::string& other);
   void put_contact(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
   SourceNode write_solid(const FebSolid& solid);
+  /// Directions of fibres by element, if they differ from the materials'.
+  void put_fibres(const FebSolid& solid, const NodeBuilder& make, SourceNode& node) const;
   void put_bonds(const FebSolid& solid, const NodeBuilder& make, SourceNode& node);
-  /// Body of a node, or the ground of a fixed one; "" if it has neither.
+  /// Body of a node, or its solid, or the ground of a fixed one; "" if it has none.
   [[nodiscard]] std::string holder(int node) const;
+  [[nodiscard]] bool is_solid(const std::string& name) const;
+  /// Chooses material and kind of element of a solid and its regions.
+  void choose_regions(FebSolid& solid);
+  /// Ends of a load between nodes, as `bodies` and `at`; false, with an error, if one is nowhere.
+  bool put_ends(const XmlFile::Element& e, const std::string& what, const std::array<int, 2>& ends,
+                SourceNode& load);
   /// Lets a boundary condition hold a component of nodes.
   void hold(const std::vector<int>& nodes, int component, int hold);
   /// Faces of a solid as a selection; an error if the facets are not on its boundary.
@@ -107,7 +145,9 @@ class FebSolids {
                         SourceNode selection, double sign);
 
   FebModel& model_;
-  std::map<std::string, FebMaterial> materials_;  ///< By name in the file.
+  std::map<std::string, FebMaterial> materials_;                   ///< By name in the file.
+  std::map<std::string, FebTruss> trusses_;                        ///< Likewise.
+  std::unordered_map<std::int64_t, FebElementData> element_data_;  ///< By number of the element.
   std::set<std::string> material_names_, solid_names_, hold_names_;
   std::vector<FebSolid> solids_;
   std::vector<FebHold> holds_;
@@ -115,7 +155,8 @@ class FebSolids {
   std::map<int, std::string> attached_;     ///< Body to which a node is attached, by node.
   std::map<std::string, std::vector<int>> surface_nodes_;
   std::set<std::string> contact_names_;
-  SourceNode contacts_;  ///< Laws of pairs; a map if there are any.
+  std::set<const XmlFile::Element*> merged_;  ///< Ties whose surfaces share their nodes.
+  SourceNode contacts_;                       ///< Laws of pairs; a map if there are any.
 };
 
 }  // namespace polhode::io

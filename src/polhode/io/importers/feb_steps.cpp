@@ -73,7 +73,9 @@ void FebModel::each_section(const char* name, FebIn in,
       if (step != nullptr && in == FebIn::step) {
         add_new(joints, first_joint, s.items);
         add_new(loads, first_load, s.items);
+        s.items.insert(s.items.end(), switched.begin(), switched.end());
       }
+      switched.clear();
       step = nullptr;
     }
   }

@@ -28,6 +28,7 @@ std::vector<std::string> parts_of(std::string_view path) {
 /// Checks that a load's nodes or faces exist.
 void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputError>& faults) {
   const std::string where = format("loads.{}", load.name);
+  if (load.has_end_on_solid()) return;
   try {
     switch (solids::solid_load_kind(where + ".type", load.type).place) {
       case solids::SolidLoadPlace::faces:
@@ -41,6 +42,20 @@ void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputEr
     }
   } catch (const InputError& e) {
     faults.push_back(e);
+  }
+}
+
+/// Checks that the ends of a load between points lie in the solid.
+void check_ends(const LoadSpec& load, int solid, const SolidPlan& plan,
+                std::vector<InputError>& faults) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (load.end_solids[k] != solid) continue;
+    try {
+      static_cast<void>(
+          solid_point(format("loads.{}.at", load.name), plan.mesh, k == 0 ? load.Z_a : load.Z_b));
+    } catch (const InputError& e) {
+      faults.push_back(e);
+    }
   }
 }
 
@@ -105,16 +120,23 @@ void check_solids(ReadContext& context, const SourceNode& root) {
   for (std::size_t s = 0; s < model.solids.size(); ++s) {
     const SolidSpec& solid = model.solids[s];
     if (!context.solid_is_sound[s]) continue;
-    const auto material = context.materials.at(solid.material);
-    if (!context.material_is_sound[static_cast<std::size_t>(material)]) continue;
+    const auto is_sound = [&](const std::string& material) {
+      return context.material_is_sound[static_cast<std::size_t>(context.materials.at(material))];
+    };
+    if (!is_sound(solid.material) ||
+        !std::all_of(solid.regions.begin(), solid.regions.end(),
+                     [&](const RegionSpec& region) { return is_sound(region.material); }))
+      continue;
     const std::size_t before = faults.size();
     const SolidPlan plan = plan_solid(model, static_cast<int>(s), &faults);
     if (model.analysis.type == "statics" && solid.bonded.empty() && solid.prescribed.empty())
       faults.emplace_back(format("solids.{}", solid.name), "nothing holds the solid",
                           "In statics bond it to a body or to ground, or prescribe nodes.");
     if (faults.size() > before) continue;
-    for (const LoadSpec& load : model.loads)
+    for (const LoadSpec& load : model.loads) {
       if (load.solid == static_cast<int>(s)) check_load(load, plan, faults);
+      check_ends(load, static_cast<int>(s), plan, faults);
+    }
     for (const Reported& asked : reported(model))
       if (asked.of->kind == "solid" && asked.of->target == solid.name)
         check_probe(*asked.of, asked.where, plan, faults);

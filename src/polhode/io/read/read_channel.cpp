@@ -18,7 +18,7 @@ std::optional<ReadChannel> read_channel(ReadContext& context, Section& section) 
   ProbeSpec& of = channel.spec.of;
   if (!read_recorded(context, section, kReporting, "that reports", of)) return std::nullopt;
   if (of.kind == "load" &&
-      context.model.loads[static_cast<std::size_t>(context.loads.at(of.target))].solid >= 0) {
+      !context.model.loads[static_cast<std::size_t>(context.loads.at(of.target))].reports()) {
     section.fault("load", format("{} acts on a solid and reports nothing", quote(of.target)),
                   "Name a load on bodies.");
     return std::nullopt;

@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_beam_name.hpp>
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/io/read/read_coupling.hpp>
+#include <polhode/io/read/read_load_values.hpp>
 #include <polhode/io/read/time_function.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/pair_on_nodes.hpp>
 #include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
@@ -96,7 +96,7 @@ class LoadReader {
         read_axis();
         break;
       case LoadPlace::points:
-        read_bodies();
+        read_ends(kind);
         read_points();
         break;
       case LoadPlace::joint:
@@ -156,7 +156,7 @@ class LoadReader {
     }
     load_.type = turns ? "torsional_spring" : "translational_spring";
     if (const TimeFunctionPtr law = section_.law("resistance")) {
-      check_resistance("resistance", *law);
+      check_resistance(section_, "resistance", *law);
       load_.laws[turns ? "damper_moment" : "damper_force"] = law;
     }
   }
@@ -190,6 +190,41 @@ class LoadReader {
     }
   }
 
+  /// Two bodies, or solids, of a load between points.
+  void read_ends(const LoadKind& kind) {
+    const SourceNode* names = section_.find("bodies");
+    bool any = false;
+    if (names && names->is_list() && names->children.size() == 2)
+      for (std::size_t k = 0; k < 2; ++k) {
+        const SourceNode& name = names->children[k];
+        if (!name.is_text() || context_.bodies.contains(name.text)) continue;
+        const auto solid = context_.solids.find(name.text);
+        if (solid == context_.solids.end()) continue;
+        any = true;
+        load_.end_solids[k] = load_.solid = solid->second;
+      }
+    if (!any) return read_bodies();
+    if (make_on_nodes(kind.name) == nullptr) {
+      section_.fault("bodies", format("a {} does not act on points of solids", kind.name),
+                     "Name a body that the solid is bonded to.");
+      return;
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (load_.end_solids[k] >= 0) continue;
+      if (const auto body = read_body(context_, names->children[k], section_.path("bodies")))
+        (k == 0 ? load_.a : load_.b) = *body;
+    }
+  }
+
+  /// Point at the start, on an end: relative to a body's centre of mass in its axes, or in the own
+  /// coordinates of a solid's mesh.
+  [[nodiscard]] Vec3 seen_from_end(std::size_t end, const Vec3& point) const {
+    const int solid = load_.end_solids[end];
+    if (solid < 0) return seen_from(context_, end == 0 ? load_.a : load_.b, point);
+    const MeshSpec& mesh = context_.model.solids[static_cast<std::size_t>(solid)].mesh;
+    return mesh.orientation.conjugate() * (point - mesh.position);
+  }
+
   /// False after a fault.
   bool check_point_keys() {
     if (section_.refuse_both("at", "at_body", "Give one of them.")) return false;
@@ -201,16 +236,20 @@ class LoadReader {
   void read_points() {
     if (!check_point_keys()) return;
     if (const auto points = section_.vector_pair("at")) {
-      load_.Z_a = seen_from(context_, load_.a, (*points)[0]);
-      load_.Z_b = seen_from(context_, load_.b, (*points)[1]);
+      load_.Z_a = seen_from_end(0, (*points)[0]);
+      load_.Z_b = seen_from_end(1, (*points)[1]);
     }
     read_points_on_bodies();
   }
 
   void read_points_on_bodies() {
     if (const auto points = section_.vector_pair("at_body")) {
-      load_.Z_a = from_com(context_, load_.a, (*points)[0]);
-      load_.Z_b = from_com(context_, load_.b, (*points)[1]);
+      const auto on_end = [&](std::size_t end, int body) {
+        const Vec3& point = (*points)[end];
+        return load_.end_solids[end] < 0 ? from_com(context_, body, point) : point;
+      };
+      load_.Z_a = on_end(0, load_.a);
+      load_.Z_b = on_end(1, load_.b);
     }
   }
 
@@ -341,7 +380,7 @@ class LoadReader {
       const TimeFunctionPtr law = section_.law(l.name);
       if (!law) continue;
       load_.laws[l.name] = law;
-      if (l.variable == "v") check_resistance(l.name, *law);
+      if (l.variable == "v") check_resistance(section_, l.name, *law);
     }
     for (const std::string& prefix : kind.curves) read_curve(prefix);
     for (const ChoiceParameter& w : kind.words)
@@ -350,7 +389,9 @@ class LoadReader {
       if (const auto v = section_.vector(p.name))
         for (int i = 0; i < 3; ++i) load_.parameters[p.name + "." + "xyz"[i]] = (*v)[i];
     for (const Parameter& p : kind.matrices)
-      if (const SourceNode* node = section_.find(p.name)) read_matrix(p.name, *node);
+      if (const SourceNode* node = section_.find(p.name))
+        if (const auto matrix = read_stiffness_matrix(context_, section_, p.name, *node))
+          load_.matrices[p.name] = *matrix;
   }
 
   /// Reads a spline through points over the chord length, or a curve over s.
@@ -399,54 +440,6 @@ class LoadReader {
     load_.parameters[prefix + "open"] = closed ? 0.0 : 1.0;
     load_.laws[x_key] = std::make_shared<TableFunction>(s, x, Interpolation::kCubic, closed);
     load_.laws[y_key] = std::make_shared<TableFunction>(s, y, Interpolation::kCubic, closed);
-  }
-
-  /// Checks that a resistance dissipates at any rate.
-  void check_resistance(const std::string& key, const TimeFunction& law) {
-    for (int k = -40; k <= 20; ++k)
-      for (const double sign : {-1.0, 1.0}) {
-        const double v = sign * std::pow(10.0, 0.1 * k), force = law(v);
-        if (force * v >= -1e-12 * std::abs(v)) continue;
-        section_.fault(
-            key, format("is {} at v = {}: a damper must not add energy", shown(force), shown(v)),
-            "Give a force with the sign of v.");
-        return;
-      }
-  }
-
-  void read_matrix(const std::string& key, const SourceNode& node) {
-    const auto fault = [&](const std::string& what, const char* hint) {
-      section_.fault(key, what, hint);
-    };
-    if (!node.is_list() || node.children.size() != 6) {
-      fault("expects six rows of six numbers", "Write [[..., ...], ...].");
-      return;
-    }
-    Mat6 M;
-    const Field number{.name = key, .meaning = "A number."};
-    for (int i = 0; i < 6; ++i) {
-      const SourceNode& row = node.children[static_cast<std::size_t>(i)];
-      if (!row.is_list() || row.children.size() != 6) {
-        fault(format("row {} has not six numbers", i + 1), "Write [[..., ...], ...].");
-        return;
-      }
-      for (int j = 0; j < 6; ++j) {
-        const auto value = read_number(context_, row.children[static_cast<std::size_t>(j)],
-                                       section_.path(key), number);
-        if (!value) return;
-        M(i, j) = *value;
-      }
-    }
-    const double size = M.cwiseAbs().maxCoeff();
-    if ((M - M.transpose()).cwiseAbs().maxCoeff() > 1e-9 * size) {
-      fault("is not symmetric", "Only a symmetric matrix has a potential.");
-      return;
-    }
-    if (M.ldlt().vectorD().minCoeff() < -1e-9 * size) {
-      fault("is not positive semidefinite, so it has no bounded energy", "Check its signs.");
-      return;
-    }
-    load_.matrices[key] = 0.5 * (M + M.transpose());
   }
 
   std::string read_joint(const char* key, const SourceNode* value, int* a, int* b) {

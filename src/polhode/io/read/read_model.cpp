@@ -200,11 +200,15 @@ void check_model(ReadContext& context, const SourceNode& root) {
                          named));
   };
   for (const SolidSpec& solid : model.solids) {
-    const auto material = context.materials.find(solid.material);
-    if (material == context.materials.end() ||
-        !model.materials[static_cast<std::size_t>(material->second)].viscosity.any())
-      continue;
-    refuse("the viscosity of " + quote(solid.material), "viscosity");
+    std::vector<std::string> names{solid.material};
+    for (const RegionSpec& region : solid.regions) names.push_back(region.material);
+    const auto viscous = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      const auto material = context.materials.find(name);
+      return material != context.materials.end() &&
+             model.materials[static_cast<std::size_t>(material->second)].viscosity.any();
+    });
+    if (viscous == names.end()) continue;
+    refuse("the viscosity of " + quote(*viscous), "viscosity");
     break;
   }
   for (const BeamSpec& beam : model.beams) {

@@ -36,12 +36,14 @@ class SolidReader {
     if (!node_.is_map()) return;
     if (const SourceNode* mesh = section_.find("mesh"))
       read_solid_mesh(context_, *mesh, section_.path("mesh"), solid_.mesh);
-    if (const auto element = section_.text("element")) read_element(*element);
+    read_element(section_, solid_.element);
     if (const SourceNode* value = section_.find("material"))
       if (const auto i = read_material_name(context_, *value, section_.path("material")))
         solid_.material = context_.model.materials[static_cast<std::size_t>(*i)].name;
     solid_.density = section_.number("density");
     if (const auto stress = section_.choice("stress")) solid_.stress = *stress;
+    if (const SourceNode* regions = section_.find("regions")) read_regions(*regions);
+    if (const SourceNode* list = section_.find("fibre_directions")) read_fibres(*list);
     if (const SourceNode* bonded = section_.find("bonded")) read_bonds(*bonded);
     if (const SourceNode* prescribed = section_.find("prescribed")) read_prescribed(*prescribed);
     if (const SourceNode* value = section_.find("contact"))
@@ -51,13 +53,62 @@ class SolidReader {
   }
 
  private:
-  void read_element(const std::string& element) {
+  static void read_element(Section& section, std::string& element) {
+    const auto given = section.text("element");
+    if (!given) return;
     const std::vector<std::string> names = solid_element_names();
-    if (std::find(names.begin(), names.end(), element) == names.end())
-      section_.fault("element", quote(element) + " is not known",
-                     did_you_mean(element, names) + "Use one of: " + name_list(names) + ".");
+    if (std::find(names.begin(), names.end(), *given) == names.end())
+      section.fault("element", quote(*given) + " is not known",
+                    did_you_mean(*given, names) + "Use one of: " + name_list(names) + ".");
     else
-      solid_.element = element;
+      element = *given;
+  }
+
+  void read_regions(const SourceNode& node) {
+    const std::string path = section_.path("regions");
+    if (node.kind == SourceNode::Kind::kEmpty) return;
+    if (!node.is_map()) {
+      context_.fault(node, path,
+                     "expects a map from names to regions, but is " + node.description(),
+                     "Write {core: {material: steel, within: {box: {...}}}}, for example.");
+      return;
+    }
+    for (std::size_t k = 0; k < node.keys.size(); ++k) {
+      const SourceNode::Key& key = node.keys[k];
+      if (!check_name(context_, key, node.children[k], path)) continue;
+      RegionSpec region;
+      region.name = key.name;
+      region.place = context_.tree.place_of(key, node.children[k]);
+      Section section(context_, node.children[k], region.place, path + "." + key.name,
+                      region_fields());
+      if (!node.children[k].is_map()) continue;
+      if (const SourceNode* value = section.find("material"))
+        if (const auto i = read_material_name(context_, *value, section.path("material")))
+          region.material = context_.model.materials[static_cast<std::size_t>(*i)].name;
+      read_element(section, region.element);
+      region.density = section.number("density");
+      if (const SourceNode* value = section.find("within"))
+        if (auto within = read_selections(context_, *value, section.path("within")))
+          region.within = std::move(*within);
+      if (const SourceNode* value = section.find("elements"))
+        if (auto elements = read_indices(context_, *value, section.path("elements")))
+          region.elements = std::move(*elements);
+      if (section.misses("within") && section.misses("elements"))
+        section.fault("has no elements", "Give within, a selection of nodes, or elements.");
+      solid_.regions.push_back(std::move(region));
+    }
+  }
+
+  void read_fibres(const SourceNode& list) {
+    const std::string path = section_.path("fibre_directions");
+    if (!list.is_list()) {
+      context_.fault(list, path, "expects a list of directions, but is " + list.description(),
+                     "Write [[1, 0, 0], [0.8, 0.6, 0], ...], one for each element.");
+      return;
+    }
+    for (const SourceNode& child : list.children)
+      if (const auto direction = read_direction(context_, child, path))
+        solid_.fibre_directions.push_back(*direction);
   }
 
   void read_bonds(const SourceNode& node) {

@@ -148,6 +148,7 @@ class Fingerprint {
         l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters, l.laws, l.words,
         l.matrices, l.joint_2, l.coordinate_2, l.R_a, l.R_b);
     if (!l.others.empty()) add(l.others);
+    if (l.has_end_on_solid()) add(l.end_solids[0], l.end_solids[1]);
     // Functions in code are represented by their presence only.
     if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()), l.part_axes);
   }
@@ -164,9 +165,15 @@ class Fingerprint {
   }
   void one(const BondSpec& b) { add(b.body, b.nodes); }
   void one(const PrescribedSpec& p) { add(p.name, p.nodes, p.displacement); }
+  void one(const RegionSpec& r) {
+    add(r.name, r.material, r.element, r.density, r.within, r.elements);
+  }
   void one(const SolidSpec& s) {
     add(s.name, s.mesh, s.element, s.material, s.stress, s.density, s.bonded, s.prescribed,
         s.contact, s.contact_surface, s.self_contact, s.velocity, s.angular_velocity);
+    // Absent entries leave the fingerprints of older models unchanged.
+    if (!s.regions.empty()) add(s.regions);
+    if (!s.fibre_directions.empty()) add(s.fibre_directions);
   }
   void one(const SectionSpec& s) {
     add(s.section.stiffness, s.section.mass_per_length, s.section.inertia_per_length,

@@ -52,7 +52,7 @@ ResultsLayout results_layout(const Simulation& simulation) {
     layout.impulses = !joint.impulses.empty();  // all joints alike
   }
   for (const LoadSpec& load : model.loads)
-    if (load.solid < 0) layout.loads.push_back({load.name, load.type});
+    if (load.reports()) layout.loads.push_back({load.name, load.type});
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const SolidPlan& plan = simulation.solids()[i].plan;
     layout.solids.push_back({model.solids[i].name, &plan.mesh, plan.start,
@@ -105,7 +105,7 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.angular_impulse.push_back(joint.impulses[1]);
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
-    if (model.loads[i].solid >= 0) continue;
+    if (!model.loads[i].reports()) continue;
     const std::vector<double> values = simulation.load(static_cast<int>(i));
     frame.loads.insert(frame.loads.end(), values.begin(), values.end());
   }

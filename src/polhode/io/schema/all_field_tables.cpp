@@ -33,7 +33,8 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&solid_mesh_fields());
   tables.push_back(&solid_contact_fields());
   for (const KindTable& kind : mesh_generator_tables()) tables.push_back(&kind.table);
-  for (const FieldTable* table : {&prescribed_fields(),
+  for (const FieldTable* table : {&region_fields(),
+                                  &prescribed_fields(),
                                   &selection_fields(),
                                   &plane_fields(),
                                   &box_fields(),

@@ -156,6 +156,7 @@ const FieldTable& obstacle_fields();
 const FieldTable& solid_fields();
 const FieldTable& solid_mesh_fields();
 const std::vector<KindTable>& mesh_generator_tables();
+const FieldTable& region_fields();
 const FieldTable& prescribed_fields();
 const FieldTable& selection_fields();
 const FieldTable& plane_fields();

@@ -5,6 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/pair_on_nodes.hpp>
 #include <polhode/loads/slide_on_beam_kind.hpp>
 #include <polhode/solids/loads/registry.hpp>
 
@@ -256,6 +257,11 @@ KindTable load_table(const LoadKind& kind) {
       break;
     case LoadPlace::points:
       fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody});
+      if (make_on_nodes(kind.name) == nullptr) break;
+      fields[fields.size() - 3].meaning = "[a, b]: bodies, or solids at a point of them";
+      fields[fields.size() - 1].meaning =
+          "The points on a and b, each in the coordinates of its body or of its solid's mesh "
+          "(ground: world).";
       break;
     case LoadPlace::joint:
       fields.push_back(kLoadJoint);

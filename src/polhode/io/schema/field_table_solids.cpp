@@ -47,7 +47,7 @@ const std::vector<KindTable>& mesh_generator_tables() {
 const FieldTable& solid_fields() {
   static const FieldTable table{
       "solid",
-      "A deformable solid: a mesh of elements of one kind and one material.",
+      "A deformable solid: a mesh of elements of one kind, with one material or several.",
       {
           {.name = "mesh",
            .kind = kSection,
@@ -69,6 +69,17 @@ const FieldTable& solid_fields() {
            .meaning = "Density of the undeformed material.",
            .standard = "the material's",
            .range = kPositive},
+          {.name = "regions",
+           .kind = kNamed,
+           .meaning = "Elements with another material, by name.",
+           .table = "region",
+           .since = "0.3"},
+          {.name = "fibre_directions",
+           .kind = kPoints,
+           .meaning = "Directions of fibres in place of the materials', along the mesh's axes: one "
+                      "for each family of each element, in the order of the elements.",
+           .standard = "those of the materials",
+           .since = "0.3"},
           {.name = "stress",
            .kind = kChoice,
            .meaning = "Stress over a step: a discrete gradient, which conserves energy at any "
@@ -155,6 +166,43 @@ const FieldTable& solid_mesh_fields() {
         });
     return t;
   }();
+  return table;
+}
+
+const FieldTable& region_fields() {
+  static const FieldTable table{
+      "region",
+      "Elements of a solid with a material of their own. They share the nodes of their "
+      "neighbours.",
+      {
+          {.name = "material",
+           .kind = kMaterial,
+           .meaning = "Name of a material.",
+           .required = true,
+           .since = "0.3"},
+          {.name = "element",
+           .kind = kText,
+           .meaning = "Kind of element, in place of the solid's.",
+           .standard = "that of the solid",
+           .since = "0.3"},
+          {.name = "within",
+           .kind = kSelection,
+           .meaning = "Elements of which this selection contains all nodes; a set of elements of "
+                      "the mesh by its name.",
+           .table = "selection",
+           .since = "0.3"},
+          {.name = "elements",
+           .kind = kIndices,
+           .meaning = "Elements by number, the first is 0, in the order of the mesh.",
+           .since = "0.3"},
+          {.name = "density",
+           .kind = kNumber,
+           .dimension = kDensity,
+           .meaning = "Density of the undeformed material.",
+           .standard = "the material's",
+           .range = kPositive,
+           .since = "0.3"},
+      }};
   return table;
 }
 

@@ -128,6 +128,39 @@ std::int64_t Mesh::element_label(int element) const {
   return element_labels.empty() ? element + 1 : element_labels[element];
 }
 
+SplitBlocks split_blocks(Mesh& mesh, const std::vector<int>& part) {
+  SplitBlocks result;
+  std::vector<ElementBlock> blocks;
+  std::vector<int> new_number(part.size());
+  int first = 0;
+  for (const ElementBlock& block : mesh.blocks) {
+    const int n = block.shape().size(), count = static_cast<int>(block.nodes.size()) / n;
+    std::map<int, std::vector<int>> of_part;
+    for (int e = first; e < first + count; ++e) of_part[part[e]].push_back(e);
+    for (const auto& [number, elements] : of_part) {
+      result.parts.push_back(number);
+      blocks.push_back({block.type, {}});
+      for (const int e : elements) {
+        new_number[e] = static_cast<int>(result.former.size());
+        result.former.push_back(e);
+        const auto at = block.nodes.begin() + static_cast<std::ptrdiff_t>(n) * (e - first);
+        blocks.back().nodes.insert(blocks.back().nodes.end(), at, at + n);
+      }
+    }
+    first += count;
+  }
+  std::vector<std::int64_t> labels;
+  for (const int e : result.former) labels.push_back(mesh.element_label(e));
+  mesh.element_labels = std::move(labels);
+  mesh.blocks = std::move(blocks);
+  for (auto& [name, set] : mesh.element_sets) set = kept_only(set, new_number);
+  for (auto& [name, surface] : mesh.surfaces)
+    for (FaceBlock& block : surface.blocks)
+      for (int& owner : block.owners)
+        if (owner >= 0) owner = new_number[owner];
+  return result;
+}
+
 Mesh part_of(const Mesh& mesh, std::string_view element_set) {
   Mesh part;
   part.name = mesh.name;

@@ -80,6 +80,17 @@ struct Mesh {
 /// @throws InputError if there is no such set; the message lists the existing ones.
 [[nodiscard]] Mesh part_of(const Mesh& mesh, std::string_view element_set);
 
+/// Blocks of a mesh after split_blocks().
+struct SplitBlocks {
+  std::vector<int> parts;   ///< Part of each new block.
+  std::vector<int> former;  ///< Former number of each element.
+};
+
+/// Splits blocks so that all elements of a block are of one part; elements are renumbered, in sets
+/// and surfaces too.
+/// @param part  By element.
+SplitBlocks split_blocks(Mesh& mesh, const std::vector<int>& part);
+
 /// Multiplies all coordinates by a factor; move() rotates by R and translates by x.
 void scale(Mesh& mesh, double factor);
 void move(Mesh& mesh, const Mat3& R, const Vec3& x);

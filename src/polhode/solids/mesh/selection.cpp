@@ -172,6 +172,40 @@ std::vector<int> select_nodes(std::string_view where, const Mesh& mesh,
   return nodes;
 }
 
+std::vector<int> select_elements(std::string_view where, const Mesh& mesh,
+                                 const std::vector<Selection>& selections) {
+  std::set<int> taken;
+  for (const Selection& selection : selections) {
+    if (selection.kind == Kind::kSet && !mesh.node_sets.contains(selection.set)) {
+      const auto found = mesh.element_sets.find(selection.set);
+      if (found != mesh.element_sets.end()) {
+        taken.insert(found->second.begin(), found->second.end());
+        continue;
+      }
+    }
+    const std::vector<int> nodes = select_nodes(where, mesh, {selection});
+    const std::vector<char> in = marked(mesh, nodes);
+    int element = 0;
+    bool any = false;
+    for (const ElementBlock& block : mesh.blocks) {
+      const std::size_t n = block.shape().nodes.size();
+      for (std::size_t e = 0; e < block.nodes.size(); e += n, ++element) {
+        const auto own = std::span<const int>(block.nodes).subspan(e, n);
+        if (!std::all_of(own.begin(), own.end(), [&](int node) { return in[node]; })) continue;
+        taken.insert(element);
+        any = true;
+      }
+    }
+    if (!any)
+      throw InputError(
+          where,
+          format("{} holds {} {} of the mesh, but no whole element", description(selection),
+                 nodes.size(), nodes.size() == 1 ? "node" : "nodes"),
+          extent_text(mesh));
+  }
+  return {taken.begin(), taken.end()};
+}
+
 Surface select_faces(std::string_view where, const Mesh& mesh,
                      const std::vector<Selection>& selections) {
   const std::vector<Selection> all{Selection{}};

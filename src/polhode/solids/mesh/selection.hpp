@@ -36,6 +36,12 @@ struct Selection {
 [[nodiscard]] std::vector<int> select_nodes(std::string_view where, const Mesh& mesh,
                                             const std::vector<Selection>& selections);
 
+/// Union of the elements of the selections: those of a set of elements by its name, and otherwise
+/// elements of which a selection contains all nodes. Ascending, no duplicates.
+/// @throws InputError as select_nodes(), and for a selection without a whole element.
+[[nodiscard]] std::vector<int> select_elements(std::string_view where, const Mesh& mesh,
+                                               const std::vector<Selection>& selections);
+
 /// Union of the faces of the selections: those of a surface by its name, and otherwise boundary
 /// faces of which a selection contains all nodes. Without selections, the whole boundary.
 /// @throws InputError as select_nodes().
