@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -147,6 +148,26 @@ TEST_F(CommandLine, StopsAtTheWallLimitWithACheckpoint) {
   ASSERT_EQ(rest.code, 0) << rest.err;
   EXPECT_EQ(value(rest.out, "result_hash"), value(straight.out, "result_hash"));
   EXPECT_EQ(value(rest.out, "frames"), "51");
+  const auto other = run({"run", "model.yaml", "--set", "analysis.duration=0.4 s", "-o", "other",
+                          "--wall-limit", "0"});
+  EXPECT_THAT(other.err, HasSubstr("polhode run model.yaml --set 'analysis.duration=0.4 s' "
+                                   "-o other --restart other/checkpoint.pst"));
+}
+
+/// Steps that are longer than the interval of the output have rows of probes within them.
+TEST_F(CommandLine, RecordsProbesBetweenSteps) {
+  write("slow.yaml",
+        "format: 1\ngravity: [0, 0, -9.81]\n"
+        "bodies: {b: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.5, 0, 0]}}\n"
+        "joints: {j: {type: revolute, bodies: [ground, b], at: [0, 0, 0], axis: y}}\n"
+        "analysis: {duration: 5 s, tolerance: 1e-5}\n"
+        "output: {every: 10 ms, probes: {j: {joint: j}}}\n");
+  const auto result = run({"run", "slow.yaml", "--json", "--quiet"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(value(result.out, "frames"), "501");
+  const std::string rows = read("slow.results/probes/j.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 501);
+  EXPECT_THAT(rows, HasSubstr("\n0.01,"));
 }
 
 TEST_F(CommandLine, FinishesTheStepAndSavesWhenInterrupted) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/system/state_archive.hpp>
@@ -223,6 +224,30 @@ loads: {turn: {type: rotary_motor, joint: hinge, angle: 0}, brake: {type: drag, 
   EXPECT_EQ(message(model),
             "loads.brake: a 'drag' cannot be a function of the motion. Use a force, moment, "
             "axial_force, rotary_motor or linear_motor.");
+}
+
+// Output times are multiples of the interval also where a function jumps; values are those after
+// it.
+TEST(LoadFunctions, OutputAtAJumpHasTheValuesAfterIt) {
+  for (const char* steps : {"tolerance: 1e-6", "tolerance: 1e-6, order: 2", "step: 10 ms"}) {
+    Model model = io::read_model_text(format(R"yaml(
+format: 1
+bodies: {{it: {{mass: 2, inertia: [1, 1, 1]}}}}
+loads: {{push: {{type: force, body: it, force: ["3*step(t, 0.5)", 0, 0]}}}}
+analysis: {{duration: 1, {}}}
+output: {{every: 0.1, hdf5: false, probes: {{it: {{body: it}}}}}}
+)yaml",
+                                             steps),
+                                      "jump.yaml", {});
+    Simulation simulation(std::move(model));
+    int frames = 0;
+    simulation.run([&](const Simulation& s) {
+      const double t = 0.1 * frames++;
+      EXPECT_NEAR(s.time(), t, 1e-15) << steps;
+      EXPECT_NEAR(s.probe("it")[7], t < 0.45 ? 0.0 : 1.5, 1e-12) << steps << " " << t;
+    });
+    EXPECT_EQ(frames, 11) << steps;
+  }
 }
 
 // Probes of the model's output by name.

@@ -12,6 +12,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/method.hpp>
+#include <polhode/simulation/smooth_model.hpp>
 
 #include "support/model_builder.hpp"
 
@@ -193,6 +194,16 @@ TEST(Method, SaysWhatItChoseAndWhy) {
   EXPECT_THAT(chosen(damped_chain(), tolerance).narration,
               HasSubstr("Orders 4 to 12 by extrapolation with automatic steps, for the tolerance "
                         "of 1e-08: the model dissipates"));
+  EXPECT_THAT(chosen(damped_chain(), tolerance).narration, testing::Not(HasSubstr("Warning")));
+  Model one_sided = damped_chain();
+  LoadSpec buffer;
+  buffer.name = "buffer";
+  buffer.type = "translational_spring";
+  buffer.words["acts"] = "compression";
+  one_sided.loads.push_back(buffer);
+  const auto kink = kink_of_forces(one_sided);
+  ASSERT_TRUE(kink.has_value());
+  EXPECT_EQ(kink->what, "'buffer' acts in compression only");
   Model rubbing = damped_chain();
   rubbing.joints.front().friction.emplace();
   EXPECT_THAT(chosen(rubbing, tolerance).narration,

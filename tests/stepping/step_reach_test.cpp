@@ -46,7 +46,9 @@ TEST(StepReach, TakesNoiseThatDoesNotAddUpForRoundOff) {
   StepReach reach;
   reach.count(0.5, 1e-12, 1e-13, true);
   EXPECT_THAT(reach.warnings(1e-6, 2), IsEmpty());
-  EXPECT_THAT(reach.warnings(1e-6, 4), ElementsAre(HasSubstr("was not reached: 1 of 1 steps")));
+  EXPECT_THAT(reach.warnings(1e-6, 4), IsEmpty());
+  reach.count(0.6, 2e-6, 1e-6, true);
+  EXPECT_THAT(reach.warnings(1e-6, 4), ElementsAre(HasSubstr("was not reached: 2 of 2 steps")));
 }
 
 }  // namespace

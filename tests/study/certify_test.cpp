@@ -87,6 +87,31 @@ TEST(Certify, RefinesTheToleranceOfAutomaticSteps) {
   }
 }
 
+// A servo that reaches its limit next to the ends of extrapolated steps, which do not notice: the
+// bar of the model's own step is that of the results of its run. Reference by DOP853 with the
+// instants of the limit located.
+TEST(Certify, TheOwnStepIsThatOfTheRunAlsoByExtrapolation) {
+  const Model model = io::read_model_text(R"(
+format: 1
+gravity: [0, 0, -9.81]
+bodies: {b: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.5, 0, 0]}}
+joints: {j: {type: revolute, bodies: [ground, b], at: [0, 0, 0], axis: y}}
+loads:
+  s: {type: rotary_servo, joint: j, angle: 0.5*sin(3*t), stiffness: 40, damping: 2, max_moment: 5}
+analysis: {duration: 5, tolerance: 1e-6}
+output: {every: 1, hdf5: false, probes: {j: {joint: j}}}
+)",
+                                          "servo.yaml", {});
+  Simulation simulation(model);
+  simulation.run();
+  const double error = std::abs(simulation.joint("j").coordinates[0] - 0.78834571);
+  const Certificate c = certify(model);
+  EXPECT_THAT(c.orders, ElementsAre(2.0));
+  EXPECT_THAT(c.notes, testing::Contains(HasSubstr("by extrapolation")));
+  EXPECT_GE(1.01 * quantity(c, "j rz").report.largest_own, error);
+  EXPECT_LT(quantity(c, "j rz").report.largest_bar, 1e-7);
+}
+
 // The motion of a chaotic triple pendulum: two runs diverge within seconds.
 TEST(Certify, ReportsWhenChaosEndsConvergence) {
   Model model = io::read_model_text(

@@ -85,6 +85,14 @@ int exit_code(const RunSummary& summary, bool limit_reached) {
   return limit_reached ? kLimit : kInterrupted;
 }
 
+/// Options without which a run that is continued would be another one.
+std::string same_run(const RunOptions& options) {
+  std::string text;
+  for (const std::string& set : options.model.overrides) text += format(" --set '{}'", set);
+  if (!options.folder.empty()) text += format(" -o {}", options.folder);
+  return text;
+}
+
 /// Writes the page of the results into their folder, and opens it on a desktop.
 void show_results(const std::string& folder, bool quiet) {
   ViewRequest request;
@@ -156,8 +164,9 @@ int run(const RunOptions& options) {
   if (!summary.message.empty() && (code == kNotConverged || code == 0)) say(summary.message);
   for (const std::string& warning : summary.warnings) say("warning: " + warning);
   if (code == kInterrupted || code == kLimit)
-    say(format("Stopped at t = {:.6g} s{}. Continue with:  polhode run {} --restart {}", summary.t,
-               code == kLimit ? " at the wall-time limit" : "", options.model.file, checkpoint));
+    say(format("Stopped at t = {:.6g} s{}. Continue with:  polhode run {}{} --restart {}",
+               summary.t, code == kLimit ? " at the wall-time limit" : "", options.model.file,
+               same_run(options), checkpoint));
   if (!options.json && !options.quiet)
     print(summary.statics ? statics_table(summary) : summary_table(summary, shows_colours()));
   std::string json = options.json ? summary_json(summary, code, folder, recorder.frames()) : "";

@@ -18,6 +18,8 @@ namespace {
 
 /// Difference of times, as a part of the output interval, below which they are equal.
 constexpr double kSameTime = 1e-9;
+/// Relative difference of a time that is its rounding, or the last moment before a break [-].
+constexpr double kRoundingOfTime = 4e-15;
 /// Length of a step below which its time is taken from the wall clock, which is read ten times as
 /// fast as that of the processor [s].
 constexpr double kShortWork = 1e-4;
@@ -175,6 +177,11 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       s.watch_stretches();
       watch_stress();
       break;
+    }
+    // A step may end at a break of a function of time, the last moment before it.
+    if (automatic && every) {
+      const double due = std::round(s.state.t / *every) * *every;
+      if (std::abs(s.state.t - due) <= kRoundingOfTime * due) s.state.t = due;
     }
     if (dense) {
       s.dense->finish(s.state, s.stepper->took_whole_order());

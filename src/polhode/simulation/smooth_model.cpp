@@ -14,6 +14,9 @@ namespace {
 /// Rates and coordinates within which a law is searched for kinks [SI].
 constexpr double kLawRange = 0x1p20;
 
+/// Order of a step for which a kink of any derivative counts.
+constexpr int kSmoothest = 12;
+
 /// Kinds of loads with histories or curves that extrapolation does not combine.
 constexpr std::array<std::string_view, 4> kNotCombined = {"point_on_curve", "curve_on_curve",
                                                           "point_on_surface", "rolling"};
@@ -150,6 +153,13 @@ void Search::elements(const Nodes& nodes) {
 }
 
 }  // namespace
+
+std::optional<NotSmooth> kink_of_forces(const Model& model) {
+  Search search(kSmoothest, false);
+  for (const LoadSpec& load : model.loads) search.load(load);
+  for (const CableLineSpec& cable : model.cables) search.cable(cable);
+  return search.found();
+}
 
 std::optional<NotSmooth> not_smooth(const Model& model, const System& system, int order,
                                     bool automatic) {

@@ -24,4 +24,8 @@ struct NotSmooth {
 [[nodiscard]] std::optional<NotSmooth> not_smooth(const Model& model, const System& system,
                                                   int order, bool automatic);
 
+/// The first force of loads and cables that may have a kink in a coordinate or a rate, whether it
+/// is reached or not.
+[[nodiscard]] std::optional<NotSmooth> kink_of_forces(const Model& model);
+
 }  // namespace polhode

@@ -25,8 +25,9 @@ void StepReach::count(double t, double error, double asked, bool noise) {
 
 std::vector<std::string> StepReach::warnings(double tolerance, int order) const {
   const bool adds_up = sum_ > (order == 2 ? kClearly : kClearlyComposed) * tolerance;
-  // Order 2 spreads the tolerance over the run; small steps may be below round-off harmlessly.
-  if (beyond_ == 0 || (order == 2 && !adds_up)) {
+  // Order 2 spreads the tolerance over the run; small steps may be below round-off harmlessly. So
+  // may steps of order 2 among extrapolated ones.
+  if (beyond_ == 0 || ((order == 2 || worst_ <= tolerance) && !adds_up)) {
     if (!adds_up) return {};
     return {
         format("tolerance: {:.2g} applies to one step; the estimated errors of {} steps add up to "

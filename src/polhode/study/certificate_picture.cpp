@@ -97,8 +97,8 @@ std::string bar_panel(const Row& row) {
   const CertifiedQuantity& q = row.q;
   const std::vector<double> bar = logarithms(q.report.bar);
   std::vector<double> own;
-  for (Eigen::Index i = 0; i < q.series.values[0].rows(); ++i)
-    own.push_back((q.series.values[0].row(i) - q.series.values[2].row(i)).norm());
+  for (Eigen::Index i = 0; i < q.series.own_values().rows(); ++i)
+    own.push_back((q.series.own_values().row(i) - q.series.values[2].row(i)).norm());
   own = logarithms(own);
   Range range;
   for (const double y : bar) range.add(y);

@@ -180,6 +180,21 @@ double largest_size(const Mat& values) {
   return most;
 }
 
+/// Values of the probes in the results of a model with automatic steps, if these are extrapolated:
+/// the runs that are compared have one order. Nothing otherwise, or if its run does not finish.
+std::optional<Sampler> own_samples(Model model, const std::vector<double>& times, double distance,
+                                   const std::atomic<bool>* stop, std::string& scheme) {
+  model.output.every = distance;
+  Simulation simulation(std::move(model));
+  scheme = simulation.summary().scheme;
+  if (scheme.find("extrapolation") == std::string::npos) return std::nullopt;
+  Sampler sampler(simulation, times, kSameTime * distance);
+  const RunSummary summary =
+      simulation.run([&](const Simulation& s) { sampler.look(s); }, {}, stop);
+  if (summary.end != RunEnd::finished || sampler.count() < times.size()) return std::nullopt;
+  return sampler;
+}
+
 }  // namespace
 
 void check_certifiable(const Model& model) {
@@ -247,6 +262,7 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
   AnalysisSpec& a = model.analysis;
   certificate.automatic = !a.step;
   // Errors are compared at one order.
+  const std::string method = a.method;
   if (certificate.automatic && !a.order && a.method == "automatic") a.method = "composition";
   certificate.duration = a.duration;
   const double first = a.step ? *a.step : a.tolerance.value_or(kStandardTolerance);
@@ -258,6 +274,20 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
     model.output.between_steps = false;  // an interpolant's error has an order of its own
   }
   const std::vector<double> times = common_times(distance, a.duration);
+  std::string scheme;
+  const auto of_run = [&]() -> std::optional<Sampler> {
+    if (a.method == method) return std::nullopt;
+    Model as_given = model;
+    as_given.analysis.method = method;
+    as_given.output.between_steps = original.output.between_steps;
+    return own_samples(std::move(as_given), times, distance, hooks.stop, scheme);
+  };
+  const std::optional<Sampler> own = of_run();
+  if (own)
+    certificate.notes.push_back(
+        format("'polhode run' takes {}. Its results are compared with the finest of three runs by "
+               "one order.",
+               scheme));
   const std::optional<double> max_step = a.max_step;
   double most_step = distance;
 
@@ -311,6 +341,7 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
       q.series.t.assign(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count));
       for (std::size_t k = 0; k < 3; ++k)
         q.series.values[k] = samplers[k].values(p, columns, count);
+      if (own) q.series.own = own->values(p, columns, count);
       q.scale = largest_size(q.series.values[2]);
       ranges[q.unit] = std::max(ranges[q.unit], range_of(q.series.values[2]));
       scales[q.unit] = std::max(scales[q.unit], q.scale);

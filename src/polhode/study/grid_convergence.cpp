@@ -125,7 +125,8 @@ ConvergenceReport estimate_error(const RefinedSeries& series, const RefinementRu
   check(series, rule);
   const std::size_t n = series.t.size();
   const auto& [f1, f2, f3] = series.values;
-  const std::vector<double> coarse = sizes(f1, f2), fine = sizes(f2, f3), own = sizes(f1, f3);
+  const std::vector<double> coarse = sizes(f1, f2), fine = sizes(f2, f3),
+                            own = sizes(series.own_values(), f3);
   const std::size_t half = samples_of(0.5 * rule.window, n);
   const std::size_t near = samples_of(0.5 * rule.bar_window, n);
   const double refinement = rule.h[1] / rule.h[2];

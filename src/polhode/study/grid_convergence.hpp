@@ -15,6 +15,9 @@ struct RefinedSeries {
   /// Coarse, middle, fine: a row per time, a column per component. NaN: no value, such as the gap
   /// of distant bodies.
   std::array<Mat, 3> values;
+  /// Of the model's own run, if that is by another method than the coarse one; else empty.
+  Mat own;
+  [[nodiscard]] const Mat& own_values() const { return own.rows() > 0 ? own : values[0]; }
 };
 
 /// Known properties of the runs.
@@ -45,7 +48,7 @@ struct ConvergenceReport {
   std::vector<double> bar;   ///< Bound of |fine − exact| at each time; infinite where it is lost.
   Mat extrapolated;          ///< Richardson's value, by time and component.
   double largest_bar = 0.0;  ///< Over the converging time.
-  /// Bound of |coarse − exact| over the same time: the accuracy of the model's own step.
+  /// Bound of |own − exact| over the same time: the accuracy of the model's own step.
   double largest_own = 0.0;
 };
 

@@ -194,6 +194,8 @@ void Recorder::frame(const Simulation& simulation) {
     impl_->lines->append(simulation.time(), beams, cables);
   }
   if (impl_->contacts) impl_->contacts->append(simulation.time(), touching_points(simulation));
+  // Frames at the ends of steps are followed by step(), those between steps are not.
+  if (impl_->probes && simulation.between_steps()) impl_->probes->record(simulation);
   ++impl_->frames;
 }
 
