@@ -2,6 +2,7 @@
 // Solids of several materials, ties, and springs, trusses and cables, in files of FEBio.
 #include <cmath>
 
+#include <polhode/compile/build_solids.hpp>
 #include <polhode/compile/solid_point.hpp>
 
 #include "feb_fixture.hpp"
