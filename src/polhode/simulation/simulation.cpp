@@ -18,7 +18,7 @@ namespace {
 
 /// Difference of times, as a part of the output interval, below which they are equal.
 constexpr double kSameTime = 1e-9;
-/// Relative difference of a time that is its rounding, or the last moment before a break [-].
+/// Relative difference of a time from the last moment before it, and from its rounding [-].
 constexpr double kRoundingOfTime = 4e-15;
 /// Length of a step below which its time is taken from the wall clock, which is read ten times as
 /// fast as that of the processor [s].
@@ -145,6 +145,19 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   s.figures.end = RunEnd::finished;
   double next = output_after(s.state.t);
   const bool dense = every && s.has_dense_output();
+  // A step may end at a break of a function of time, the last moment before it.
+  const auto is_just_before = [&](double t) {
+    return s.state.t < t && t - s.state.t <= kRoundingOfTime * t;
+  };
+  const auto look_at = [&](double t) {
+    const double reached = std::exchange(s.state.t, t);
+    s.forget_reports();
+    s.between_steps = true;
+    look();
+    s.between_steps = false;
+    s.state.t = reached;
+    s.forget_reports();
+  };
   const auto look_between = [&](double t) {
     const double t0 = wall_clock();
     State reached = std::exchange(s.state, s.dense->at(t));
@@ -178,18 +191,16 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       watch_stress();
       break;
     }
-    // A step may end at a break of a function of time, the last moment before it.
-    if (automatic && every) {
-      const double due = std::round(s.state.t / *every) * *every;
-      if (std::abs(s.state.t - due) <= kRoundingOfTime * due) s.state.t = due;
-    }
     if (dense) {
       s.dense->finish(s.state, s.stepper->took_whole_order());
       for (; next < s.state.t * (1.0 - kSameTime); next = output_after(next)) look_between(next);
     }
     const bool finished = s.state.t >= end * (1.0 - kSameTime) || s.stopped();
     if (!every || finished || s.state.t >= next * (1.0 - kSameTime)) {
-      look();
+      if (automatic && !finished && is_just_before(next))
+        look_at(next);
+      else
+        look();
       next = output_after(s.state.t);
     }
     if (!on_step) continue;
