@@ -24,8 +24,7 @@ namespace polhode::cli {
                     [](const BodySpec& body) { return body.node_of.empty() && !body.fixed; }));
 }
 
-/// Kinds of element of a solid, once each, though a solid of several materials has several groups
-/// of a kind.
+/// Kinds of element of a solid, once each, though each of several materials has its own groups.
 [[nodiscard]] inline std::vector<std::string> element_kinds_of(const SolidPlan& plan) {
   std::vector<std::string> kinds;
   for (const std::string& kind : plan.elements)

@@ -204,6 +204,9 @@ TEST(Method, SaysWhatItChoseAndWhy) {
   const auto kink = kink_of_forces(one_sided);
   ASSERT_TRUE(kink.has_value());
   EXPECT_EQ(kink->what, "'buffer' acts in compression only");
+  one_sided.loads.back() = {};
+  one_sided.loads.back().type = "rolling";  // not combined by extrapolation, but without a kink
+  EXPECT_FALSE(kink_of_forces(one_sided).has_value());
   Model rubbing = damped_chain();
   rubbing.joints.front().friction.emplace();
   EXPECT_THAT(chosen(rubbing, tolerance).narration,

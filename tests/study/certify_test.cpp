@@ -105,6 +105,7 @@ output: {every: 1, hdf5: false, probes: {j: {joint: j}}}
   Simulation simulation(model);
   simulation.run();
   const double error = std::abs(simulation.joint("j").coordinates[0] - 0.78834571);
+  EXPECT_THAT(simulation.summary().narration, HasSubstr("Compare with order: 2"));
   const Certificate c = certify(model);
   EXPECT_THAT(c.orders, ElementsAre(2.0));
   EXPECT_THAT(c.notes, testing::Contains(HasSubstr("by extrapolation")));

@@ -6,9 +6,9 @@
 
 namespace polhode {
 
-/// Resistance to the motion of b's point relative to a, and to the relative rotation, by axes e_i
-/// of b: the force −(c_i + d_i |v_i|) v_i along each axis and the moment −(γ_i + δ_i |ω_i|) ω_i
-/// about it, v the velocity of b's point relative to a's at the same place. It dissipates
+/// Resistance to the motion of b's point relative to a, and to the relative rotation, by b's axes
+/// e_i: the force −(c_i + d_i |v_i|) v_i along each and the moment −(γ_i + δ_i |ω_i|) ω_i about it,
+/// v the velocity of b's point relative to a's at the same place. It dissipates
 /// −(F·v + M·ω) Δt ≥ 0 in each step. @eq{axis-drag-law}
 class AxisDrag : public InteractionItem {
  public:

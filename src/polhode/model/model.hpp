@@ -123,8 +123,8 @@ struct LoadSpec {
       vector;             ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
   TimeFunctionPtr value;  ///< Pressure [Pa], or the function of a motor.
   int solid = -1;         ///< Of a load on a solid: index into Model::solids.
-  /// Of a spring between two points: the solid of each, in whose mesh's own coordinates Z_a or Z_b
-  /// then is; -1: a body or the ground. `solid` is one of them.
+  /// Solids at the two ends of a spring, in whose mesh's own coordinates Z_a or Z_b then is; -1: a
+  /// body or the ground. `solid` is one of them.
   std::array<int, 2> end_solids{-1, -1};
   std::vector<solids::Selection> selection;  ///< Its nodes or faces; empty: all.
   bool follower = false;           ///< A pressure that follows the surface and its present area.

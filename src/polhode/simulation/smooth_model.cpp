@@ -31,6 +31,10 @@ class Search {
   void interactions(const System& system);
   void controllers(const Model& model);
   void load(const LoadSpec& load);
+  /// Kinks that a load or a cable with a fixed step must not have.
+  void kinks_of(const LoadSpec& load);
+  void kinks_of(const CableLineSpec& cable);
+  void laws(const LoadSpec& load);
   void cable(const CableLineSpec& cable);
   void elements(const Nodes& nodes);
   [[nodiscard]] const std::optional<NotSmooth>& found() const { return found_; }
@@ -40,8 +44,6 @@ class Search {
     if (!found_) found_ = {what, why, hint};
   }
   void law(const LoadSpec& load, const std::string& key, const TimeFunction& law);
-  void kinks_of(const LoadSpec& load);
-  void kinks_of(const CableLineSpec& cable);
   /// Whether a force with a jump in this derivative keeps the order: a step across the jump has an
   /// error H^(derivative + 2) in positions, and a run crosses it a bounded number of times. Where
   /// the error is held, any continuous force does.
@@ -70,11 +72,14 @@ void Search::load(const LoadSpec& load) {
     refuse(format("'{}' is a {}", load.name, load.type), "whose state it does not combine",
            kOrderTwo);
   if (!automatic_) kinks_of(load);
+  laws(load);
+}
+
+void Search::laws(const LoadSpec& load) {
   for (const auto& [key, of_key] : load.laws)
     if (of_key) law(load, key, *of_key);
 }
 
-/// Kinks that a load with a fixed step must not have.
 void Search::kinks_of(const LoadSpec& load) {
   const auto given = [&](const char* key) {
     const auto at = load.parameters.find(key);
@@ -156,8 +161,11 @@ void Search::elements(const Nodes& nodes) {
 
 std::optional<NotSmooth> kink_of_forces(const Model& model) {
   Search search(kSmoothest, false);
-  for (const LoadSpec& load : model.loads) search.load(load);
-  for (const CableLineSpec& cable : model.cables) search.cable(cable);
+  for (const LoadSpec& load : model.loads) {
+    search.kinks_of(load);
+    search.laws(load);
+  }
+  for (const CableLineSpec& cable : model.cables) search.kinks_of(cable);
   return search.found();
 }
 

@@ -27,8 +27,8 @@ class NodalRecovery {
   /// @param mesh  Must outlive this.
   /// @param moduli  Of the material at rest [Pa], for energies; the bulk modulus is positive.
   NodalRecovery(const Mesh& mesh, LinearModuli moduli);
-  /// Of a solid of several materials, across whose interfaces the stress may jump: each is
-  /// recovered by itself, and a node of several has the mean of theirs, weighted by their volume
+  /// Recovery in a solid of several materials, as the stress may jump across their interfaces: each
+  /// is recovered by itself, and a node of several has the mean of theirs, weighted by their volume
   /// around it.
   /// @param materials  By block of the mesh, any numbers. @param moduli  By block.
   NodalRecovery(const Mesh& mesh, const std::vector<int>& materials,

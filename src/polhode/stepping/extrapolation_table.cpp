@@ -81,7 +81,7 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   NewtonReport report;
   int iterations = 0;
   bool hard = false;
-  std::vector<double> rounding;  // of the members' ends: each substep's increments add up
+  std::vector<double> rounding;  // by member: increments of its substeps add up
   const auto columns = static_cast<std::size_t>(way.columns);
   difference_before_ = 0.0;
   const auto hopeless = [&] {
@@ -110,7 +110,7 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
     met_stop_ = end.met_stop;
     report.iterations = iterations += report.iterations;
     report.hard = hard = hard || report.hard;
-    rounding.push_back(counts_[j] * static_cast<double>(report.rounding));
+    rounding.push_back(counts_[j] * report.rounding);
     const bool ends_here = !report.converged || met_stop_ || (j + 2 == columns && hopeless());
     if (ends_here) {
       state.ledger.iterations += iterations;

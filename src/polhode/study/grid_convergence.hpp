@@ -15,7 +15,7 @@ struct RefinedSeries {
   /// Coarse, middle, fine: a row per time, a column per component. NaN: no value, such as the gap
   /// of distant bodies.
   std::array<Mat, 3> values;
-  /// Of the model's own run, if that is by another method than the coarse one; else empty.
+  /// Values of the model's own run, if that is by another method than the coarse one; else empty.
   Mat own;
   [[nodiscard]] const Mat& own_values() const { return own.rows() > 0 ? own : values[0]; }
 };

@@ -24,7 +24,7 @@ class MjcfInertia {
   /// Inertia of a joint while all others are free to move, the harmonic mean over its velocities;
   /// zero if the matrix is not positive [kg m², kg].
   [[nodiscard]] double effective(std::size_t joint) const;
-  /// Likewise along a sum of coordinates of joints with one: factors by their numbers.
+  /// Inertia along a sum of coordinates of joints: factors by their numbers.
   [[nodiscard]] double effective(const std::vector<std::pair<std::size_t, double>>& sum) const;
   /// Whether there are few enough joints.
   [[nodiscard]] bool is_there() const { return first_.back() <= kMost; }

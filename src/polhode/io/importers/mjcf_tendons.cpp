@@ -209,7 +209,7 @@ const std::string& MjcfTendons::length_joint(const std::string& name) {
   for (const RobotLink& link : robot_.links) taken.insert(link.name);
   joint_name = name + "_length";
   while (taken.contains(joint_name)) joint_name += "_2";
-  // What moves with the tendon besides its joints: almost nothing, across gravity.
+  // Mass that moves with the tendon besides its joints: almost none, across gravity.
   double mass = inertia_of(name);
   if (!(mass > 0.0))
     for (const RobotLink& link : robot_.links) mass += link.mass.mass;

@@ -200,7 +200,7 @@ struct RobotContactPair {
   double friction = 0.0, torsion = 0.0, rolling = 0.0;  ///< Coefficient; lengths [m].
 };
 
-/// What touches, in a model with contacts.
+/// Exclusions and pairs of contacts, for a model with a section of contacts.
 struct RobotContacts {
   bool wanted = false;
   bool friction = false;  ///< By the larger coefficient of two shapes.
