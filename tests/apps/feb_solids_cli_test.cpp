@@ -22,8 +22,10 @@ struct Cells {
   std::vector<Vec3> nodes;
   std::vector<std::vector<int>> cells;
 
-  int middle(int a, int b) {
-    const Vec3 x = 0.5 * (nodes[static_cast<std::size_t>(a)] + nodes[static_cast<std::size_t>(b)]);
+  /// The node between some others.
+  int middle(const std::vector<int>& of) {
+    Vec3 x = Vec3::Zero();
+    for (const int n : of) x += nodes[static_cast<std::size_t>(n)] / static_cast<double>(of.size());
     for (std::size_t k = 0; k < nodes.size(); ++k)
       if ((nodes[k] - x).norm() < 1e-9) return static_cast<int>(k);
     nodes.push_back(x);
@@ -38,19 +40,29 @@ Cells cube(const std::string& type) {
              {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   if (type.starts_with("tet"))
     c.cells = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-  else if (type == "penta6")
+  else if (type.starts_with("penta"))
     c.cells = {{0, 1, 2, 4, 5, 6}, {0, 2, 3, 4, 6, 7}};
   else
     c.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
   std::vector<std::array<int, 2>> edges;
-  if (type == "tet10") edges = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  if (type == "tet10" || type == "tet15") edges = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  if (type == "penta15")
+    edges = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
   if (type == "hex20" || type == "hex27")
     edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
              {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
   for (std::vector<int>& cell : c.cells)
     for (const auto& e : edges)
       cell.push_back(
-          c.middle(cell[static_cast<std::size_t>(e[0])], cell[static_cast<std::size_t>(e[1])]));
+          c.middle({cell[static_cast<std::size_t>(e[0])], cell[static_cast<std::size_t>(e[1])]}));
+  if (type == "tet15")
+    for (std::vector<int>& cell : c.cells) {
+      for (const std::array<int, 3>& f : {std::array{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3}})
+        cell.push_back(
+            c.middle({cell[static_cast<std::size_t>(f[0])], cell[static_cast<std::size_t>(f[1])],
+                      cell[static_cast<std::size_t>(f[2])]}));
+      cell.push_back(c.middle({cell[0], cell[1], cell[2], cell[3]}));
+    }
   if (type == "hex27")
     for (const Vec3& x :
          {Vec3(0.5, 0, 0.5), Vec3(1, 0.5, 0.5), Vec3(0.5, 1, 0.5), Vec3(0, 0.5, 0.5),
@@ -161,7 +173,8 @@ class FebSolidsCli : public test::CommandLine {
 // St. Venant-Kirchhoff: the force is E (l^2 - 1)/2 l of any mesh.
 TEST_F(FebSolidsCli, EveryElementStretchesEvenly) {
   const double l = 1.3, force = 1e6 * (l * l - 1) / 2 * l;
-  for (const std::string type : {"hex8", "hex20", "hex27", "tet4", "tet10", "penta6"})
+  for (const std::string type :
+       {"hex8", "hex20", "hex27", "tet4", "tet10", "tet15", "penta6", "penta15"})
     EXPECT_NEAR(pull(type, kElastic) / force, 1.0, 1e-9) << type;
 }
 

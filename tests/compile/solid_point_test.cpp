@@ -15,7 +15,8 @@ constexpr double kMapped = 1e-11;
 Vec3 position(const solids::Mesh& mesh, const SolidPoint& point) { return point.value(mesh.nodes); }
 
 TEST(SolidPoint, HasTheGivenPositionInEveryKindOfCell) {
-  for (const char* cell : {"hex8", "hex20", "hex27", "tet4", "tet10", "wedge6"}) {
+  for (const char* cell :
+       {"hex8", "hex20", "hex27", "tet4", "tet10", "tet15", "wedge6", "wedge15"}) {
     SCOPED_TRACE(cell);
     const solids::Mesh mesh = solids::make_mesh(
         "mesh", "cylinder", {{"diameter", {2.0}}, {"length", {3.0}}, {"cells", {2, 8, 3}}}, cell);

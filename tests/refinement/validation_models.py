@@ -138,7 +138,7 @@ def elements():
                  solids={"bar": {"mesh": {"block": {"size": [6, 0.5, 0.5], "cells": [2, 1, 1]}, "position": [3.5, 0, 0]}, "element": "hex20", "material": "rubber", "bonded": {"hub": "xmin"}}},
                  probes={"hub": {"body": "hub"}, "tip": {"solid": "bar", "node": 5}, "root": {"solid": "bar", "interface": "hub"}})
     variants = tuple(Variant(kind, {"solids.bar.element": kind, "solids.bar.material": "nearly" if kind == "hex8_q1p0" else "rubber"})
-                     for kind in ("hex8_standard", "hex8_eas9", "hex8_q1p0", "hex20", "hex27", "tet4", "tet10", "wedge6"))
+                     for kind in ("hex8_standard", "hex8_eas9", "hex8_q1p0", "hex20", "hex27", "tet4", "tet10", "tet15", "wedge6", "wedge15"))
     return (case("solid_elements", "Each kind of element on a tumbling body.", made, 2e-2, 0.2, variants, skip=WAVES + ("tip.[m/s]",), fractions=(1, 0.5, 0.2, 0.05), because=WHY_WAVES),
             case("solid_elements_resolved", "Each kind of element on a tumbling body, its waves resolved.", made, 1e-3, 0.01, variants, fractions=(1, 0.5, 0.2, 0.05)))
 

@@ -155,10 +155,23 @@ class SolidStep {
 }
 
 /// One element of a kind, slightly distorted; lengths of about 2.
+/// Distance of the nearest nodes of a reference cell over half an edge of a tetrahedron, at most 1:
+/// strains by random displacements of nodes are the larger the nearer these are.
+[[nodiscard]] inline double closeness(const solids::CellShape& cell) {
+  double least = 0.5;
+  for (int a = 0; a < cell.size(); ++a)
+    for (int b = 0; b < a; ++b)
+      least = std::min(
+          least, (cell.nodes[static_cast<std::size_t>(a)] - cell.nodes[static_cast<std::size_t>(b)])
+                     .norm());
+  return least / 0.5;
+}
+
 [[nodiscard]] inline std::vector<Vec3> distorted_element(const solids::ElementKind& kind,
                                                          Random& random, double size = 0.06) {
   std::vector<Vec3> X;
-  for (const Vec3& xi : kind.cell().nodes) X.push_back(xi + random.vector(size));
+  const double most = size * closeness(kind.cell());
+  for (const Vec3& xi : kind.cell().nodes) X.push_back(xi + random.vector(most));
   return X;
 }
 

@@ -69,7 +69,7 @@ output: {hdf5: false}
 TEST(Locking, IsReportedBeforeARunWhereItIsMeasured) {
   const std::map<std::string, int> elements{{"hex8_standard", 2}, {"hex8_eas9", 2}, {"hex20", 1},
                                             {"hex27", 1},         {"tet4", 2},      {"tet10", 2},
-                                            {"wedge6", 2}};
+                                            {"tet15", 2},         {"wedge6", 2},    {"wedge15", 1}};
   for (const double nu : {0.3, 0.49, 0.4999}) {
     const double lame = (1.0 + nu) / 1e6 / 3.0 * ((1.0 - 2.0 * nu) * 0.1 + 0.4);
     const double beam = solve(kCantilever, "tet10", nu, 3, 2).displacement;

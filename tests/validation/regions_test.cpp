@@ -53,8 +53,8 @@ double stretch_at(double stress, double modulus) {
   return stretch;
 }
 
-constexpr const char* kElements[] = {"hex8_standard", "hex8",  "hex20", "hex27",
-                                     "tet4",          "tet10", "wedge6"};
+constexpr const char* kElements[] = {"hex8_standard", "hex8",  "hex20",  "hex27",  "tet4",
+                                     "tet10",         "tet15", "wedge6", "wedge15"};
 
 // One behind the other: the stress is the same, on every kind of element, and the patch of each
 // material has its own homogeneous strain up to the interface.

@@ -30,7 +30,9 @@ std::vector<Kind> kinds() {
           {"hex20", "hex20", "neo_hookean", kCompressible, {2, 1, 1}},
           {"tet10", "tet10", "neo_hookean", kCompressible, {2, 1, 1}},
           {"hex27", "hex27", "neo_hookean", kCompressible, {2, 1, 1}},
-          {"wedge6", "wedge6", "neo_hookean", kCompressible, {3, 1, 1}}};
+          {"wedge6", "wedge6", "neo_hookean", kCompressible, {3, 1, 1}},
+          {"tet15", "tet15", "neo_hookean", kCompressible, {2, 1, 1}},
+          {"wedge15", "wedge15", "neo_hookean", kCompressible, {2, 1, 1}}};
 }
 
 class EveryElement : public testing::TestWithParam<Kind> {};

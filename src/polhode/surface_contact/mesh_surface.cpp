@@ -33,6 +33,8 @@ class Triangulation {
       triangle(n[3], n[1], n[4]);
       triangle(n[5], n[4], n[2]);
       triangle(n[3], n[4], n[5]);
+    } else if (shape == "tri7") {
+      fan_of_faces({n[0], n[3], n[1], n[4], n[2], n[5]}, vertex(n[6]));
     } else if (shape == "quad4") {
       MeshSurface::Face face{4, {}, static_cast<int>(surface_.triangles.size())};
       for (std::size_t k = 0; k < 4; ++k) face.vertex[k] = vertex(n[k]);

@@ -45,6 +45,7 @@ namespace {
 std::vector<std::array<int, 3>> triangles_of(const std::string& type) {
   if (type == "tri3") return {{0, 1, 2}};
   if (type == "tri6") return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  if (type == "tri7") return {{0, 3, 6}, {3, 1, 6}, {1, 4, 6}, {4, 2, 6}, {2, 5, 6}, {5, 0, 6}};
   if (type == "quad8") return {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {6, 3, 7}, {4, 5, 6}, {4, 6, 7}};
   if (type == "quad9")
     return {{0, 4, 8}, {0, 8, 7}, {4, 1, 5}, {4, 5, 8}, {8, 5, 2}, {8, 2, 6}, {7, 8, 6}, {7, 6, 3}};

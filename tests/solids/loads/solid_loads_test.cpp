@@ -174,7 +174,7 @@ TEST_P(ClosedSurface, DistributesTheWeightOfItsVolumeOverItsNodes) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, ClosedSurface,
                          testing::Values("hex8_standard", "hex20", "hex27", "tet4", "tet10",
-                                         "wedge6"),
+                                         "tet15", "wedge6", "wedge15"),
                          [](const auto& test) { return test.param; });
 
 TEST(SolidLoads, PutTheSameForceOnEveryNode) {

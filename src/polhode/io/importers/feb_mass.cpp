@@ -11,63 +11,28 @@ namespace polhode::io {
 
 namespace {
 
-/// Distance of a node from the middle of its edge, over the length of the edge, up to which the
-/// edge is straight.
-constexpr double kStraight = 1e-6;
-
 /// Rounding of sums over elements.
 constexpr double kRounding = 1e-13;
-
-/// Edges of tet15 and penta15 in the order of their nodes after the corners.
-using Edge = std::array<int, 2>;
-const std::vector<Edge>& edges_of(bool tetrahedron) {
-  static const std::vector<Edge> tet{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-  static const std::vector<Edge> penta{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5},
-                                       {5, 3}, {0, 3}, {1, 4}, {2, 5}};
-  return tetrahedron ? tet : penta;
-}
 
 solids::Quadrature rule_of(const std::string& shape) {
   if (shape.starts_with("hex")) return solids::hexahedron_rule(4);
   if (shape == "tet4") return solids::tetrahedron_rule(2);
-  if (shape == "tet10") return solids::tetrahedron_rule(7);
+  if (shape.starts_with("tet")) return solids::tetrahedron_rule(7);
+  if (shape == "wedge15") return solids::collapsed_wedge_rule();
   return solids::wedge_rule();
-}
-
-/// Shape that has the same volume; "" if there is none.
-std::string shape_of_volume(const FebMesh& mesh, const FebPart& part) {
-  if (!part.shape.empty()) return part.shape;
-  const bool tetrahedron = part.type == "tet15";
-  if (!tetrahedron && part.type != "penta15") return "";
-  const std::size_t corners = tetrahedron ? 4 : 6, size = static_cast<std::size_t>(part.size);
-  for (std::size_t e = 0; e < part.nodes.size(); e += size)
-    for (std::size_t k = 0; k < edges_of(tetrahedron).size(); ++k) {
-      const auto node = [&](std::size_t n) {
-        return mesh.nodes[static_cast<std::size_t>(part.nodes[e + n])];
-      };
-      const Edge& edge = edges_of(tetrahedron)[k];
-      const Vec3 a = node(static_cast<std::size_t>(edge[0]));
-      const Vec3 b = node(static_cast<std::size_t>(edge[1]));
-      if ((node(corners + k) - 0.5 * (a + b)).norm() > kStraight * (b - a).norm()) return "";
-    }
-  return tetrahedron ? "tet4" : "wedge6";
 }
 
 }  // namespace
 
 std::optional<geometry::MassProperties> feb_mass(FebFile& file, const FebMesh& mesh,
                                                  const FebPart& part, double density) {
-  const std::string shape_name = shape_of_volume(mesh, part);
-  if (shape_name.empty()) {
-    file.refuse(*part.at,
-                format("{} elements {} are not read", part.type,
-                       part.type == "tet15" || part.type == "penta15" ? "with curved edges"
-                                                                      : "of a rigid body"),
-                "Mesh the part with hex8, hex20, hex27, tet4, tet10 or penta6.");
+  if (part.shape.empty() || !part.is_solid()) {
+    file.refuse(*part.at, format("{} elements of a rigid body are not read", part.type),
+                "Mesh the part with hex8, hex20, hex27, tet4, tet10, tet15, penta6 or penta15.");
     return std::nullopt;
   }
-  const solids::CellShape& shape = solids::cell_shape(shape_name);
-  const solids::Quadrature rule = rule_of(shape_name);
+  const solids::CellShape& shape = solids::cell_shape(part.shape);
+  const solids::Quadrature rule = rule_of(part.shape);
   std::vector<Vec> values;
   for (const solids::QuadraturePoint& q : rule) values.push_back(shape_functions(shape, q.xi));
   // Moments about the first node lose few digits where the mesh is far from the origin.

@@ -21,13 +21,18 @@ struct FebElement {
   int nodes;
   const char* shape;
 };
-constexpr FebElement kElements[] = {
-    {"hex8", 8, "hex8"},    {"hex20", 20, "hex20"},  {"hex27", 27, "hex27"}, {"tet4", 4, "tet4"},
-    {"tet10", 10, "tet10"}, {"penta6", 6, "wedge6"}, {"tet5", 5, ""},        {"tet15", 15, ""},
-    {"tet20", 20, ""},      {"penta15", 15, ""},     {"pyra5", 5, ""},       {"pyra13", 13, ""},
-    {"quad4", 4, ""},       {"quad8", 8, ""},        {"quad9", 9, ""},       {"tri3", 3, ""},
-    {"tri6", 6, ""},        {"tri7", 7, ""},         {"q4ans", 4, ""},       {"q4eas", 4, ""},
-    {"line2", 2, ""},       {"line3", 3, ""},        {"truss2", 2, ""}};
+constexpr FebElement kElements[] = {{"hex8", 8, "hex8"},    {"hex20", 20, "hex20"},
+                                    {"hex27", 27, "hex27"}, {"tet4", 4, "tet4"},
+                                    {"tet10", 10, "tet10"}, {"penta6", 6, "wedge6"},
+                                    {"tet5", 5, ""},        {"tet15", 15, "tet15"},
+                                    {"tet20", 20, ""},      {"penta15", 15, "wedge15"},
+                                    {"pyra5", 5, ""},       {"pyra13", 13, ""},
+                                    {"quad4", 4, ""},       {"quad8", 8, ""},
+                                    {"quad9", 9, ""},       {"tri3", 3, ""},
+                                    {"tri6", 6, ""},        {"tri7", 7, ""},
+                                    {"q4ans", 4, ""},       {"q4eas", 4, ""},
+                                    {"line2", 2, ""},       {"line3", 3, ""},
+                                    {"truss2", 2, ""}};
 
 /// Place of a node of hex27 in the order of a model file: of 20 to 26.
 constexpr int kFaceNodesOfHex27[] = {22, 21, 23, 20, 24, 25, 26};

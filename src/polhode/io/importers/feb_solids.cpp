@@ -74,7 +74,7 @@ void FebSolids::assemble() {
     if (!materials_.contains(part.material)) continue;
     if (part.shape.empty() || !part.is_solid())
       file.refuse(*part.at, format("{} elements of a deformable solid are not read", part.type),
-                  "Mesh the part with hex8, hex20, hex27, tet4, tet10 or penta6.");
+                  "Mesh the part with hex8, hex20, hex27, tet4, tet10, tet15, penta6 or penta15.");
     else if (!part.nodes.empty())
       parts.push_back(&part);
   }

@@ -61,6 +61,7 @@ struct Cells {
 std::vector<std::size_t> vtk_order(const solids::CellShape& shape) {
   // VTK sees the triangle 0 1 2 of a wedge from outside, we see it from inside.
   if (shape.name == "wedge6") return {0, 2, 1, 3, 5, 4};
+  if (shape.name == "wedge15") return {0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
   std::vector<std::size_t> order(static_cast<std::size_t>(shape.size()));
   std::iota(order.begin(), order.end(), 0);
   return order;

@@ -243,9 +243,9 @@ inline constexpr ElementKernel kKernelOf = {evaluate_elements<P, kKind>, advance
 
 template <class P>
 struct KernelTable {
-  ElementKernel kind[kElementKinds] = {kKernelOf<P, 0>, kKernelOf<P, 1>, kKernelOf<P, 2>,
-                                       kKernelOf<P, 3>, kKernelOf<P, 4>, kKernelOf<P, 5>,
-                                       kKernelOf<P, 6>, kKernelOf<P, 7>};
+  ElementKernel kind[kElementKinds] = {
+      kKernelOf<P, 0>, kKernelOf<P, 1>, kKernelOf<P, 2>, kKernelOf<P, 3>, kKernelOf<P, 4>,
+      kKernelOf<P, 5>, kKernelOf<P, 6>, kKernelOf<P, 7>, kKernelOf<P, 8>, kKernelOf<P, 9>};
 };
 
 }  // namespace polhode::solids

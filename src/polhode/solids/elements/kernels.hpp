@@ -106,7 +106,9 @@ inline constexpr ElementSizes kElementSizes[] = {
     {27, 27, 0, false},  // hex27
     {4, 1, 0, false},    // tet4
     {10, 4, 0, false},   // tet10
+    {15, 15, 0, false},  // tet15
     {6, 6, 0, false},    // wedge6
+    {15, 18, 0, false},  // wedge15
 };
 inline constexpr int kElementKinds = sizeof kElementSizes / sizeof kElementSizes[0];
 

@@ -31,9 +31,14 @@ std::vector<std::pair<double, double>> gauss(int points) {
       const double v = (322.0 + s) / 900.0, w = (322.0 - s) / 900.0;
       return {{-b, w}, {-a, v}, {0.0, 128.0 / 225.0}, {a, v}, {b, w}};
     }
+    case 6:
+      // Roots of Legendre's polynomial of degree 6, which have no closed form in square roots.
+      return {{-0.9324695142031521, 0.1713244923791704}, {-0.6612093864662645, 0.3607615730481386},
+              {-0.2386191860831969, 0.4679139345726910}, {0.2386191860831969, 0.4679139345726910},
+              {0.6612093864662645, 0.3607615730481386},  {0.9324695142031521, 0.1713244923791704}};
     default:
       throw InputError("quadrature", format("there is no Gauss rule of {} points here", points),
-                       "Use 1 to 5 points");
+                       "Use 1 to 6 points");
   }
 }
 
@@ -53,10 +58,26 @@ Quadrature tetrahedron_rule(int degree) {
     const double w = 1.0 / 24.0;
     return {{{b, b, b}, w}, {{a, b, b}, w}, {{b, a, b}, w}, {{b, b, a}, w}};
   }
-  // A cube mapped to the tetrahedron: degree 9 in each variable, 2 of it for the Jacobian.
+  if (degree == 5) {
+    Quadrature rule{{Vec3::Constant(0.25), 8.0 / 405.0}};
+    for (const double sign : {-1.0, 1.0}) {
+      const double root = sign * std::sqrt(15.0);
+      const double a = (7.0 + root) / 34.0, b = (13.0 - 3.0 * root) / 34.0;
+      const double w = (2665.0 - 14.0 * root) / 226800.0;
+      for (const Vec3& xi : {Vec3(a, a, a), Vec3(b, a, a), Vec3(a, b, a), Vec3(a, a, b)})
+        rule.push_back({xi, w});
+    }
+    const double c = (10.0 - 2.0 * std::sqrt(15.0)) / 40.0, d = 0.5 - c;
+    for (const Vec3& xi :
+         {Vec3(c, c, d), Vec3(c, d, c), Vec3(d, c, c), Vec3(c, d, d), Vec3(d, c, d), Vec3(d, d, c)})
+      rule.push_back({xi, 5.0 / 567.0});
+    return rule;
+  }
+  // A cube mapped to the tetrahedron: degree 9 or 11 in each variable, 2 of it for the Jacobian in
+  // the first, one in the second.
   Quadrature rule;
   const auto line = gauss(5);
-  for (const auto& [s, w_s] : line)
+  for (const auto& [s, w_s] : gauss(degree == 8 ? 6 : 5))
     for (const auto& [t, w_t] : line)
       for (const auto& [u, w_u] : line) {
         const double a = 0.5 * (1.0 + s), b = 0.5 * (1.0 + t), c = 0.5 * (1.0 + u);
@@ -87,6 +108,18 @@ Quadrature triangle_rule(int degree) {
   return rule;
 }
 
+/// Triangle of degree 7: a square of 5 × 4 points mapped to it, one degree of the first for the
+/// Jacobian.
+Quadrature collapsed_triangle_rule() {
+  Quadrature rule;
+  for (const auto& [s, w_s] : gauss(5))
+    for (const auto& [t, w_t] : gauss(4)) {
+      const double a = 0.5 * (1.0 + s), b = 0.5 * (1.0 + t);
+      rule.push_back({{a, b * (1.0 - a), 0.0}, 0.25 * w_s * w_t * (1.0 - a)});
+    }
+  return rule;
+}
+
 Quadrature quadrilateral_rule(int points) {
   Quadrature rule;
   const auto line = gauss(points);
@@ -105,13 +138,35 @@ Quadrature wedge_rule() {
   return rule;
 }
 
+Quadrature wedge15_rule() {
+  Quadrature rule;
+  for (const auto& [z, w_z] : gauss(3))
+    for (const QuadraturePoint& p : triangle_rule(4))
+      rule.push_back({{p.xi[0], p.xi[1], z}, p.weight * w_z});
+  return rule;
+}
+
+Quadrature collapsed_wedge_rule() {
+  // A cube mapped to the prism: degree 9 in each variable, one of it for the Jacobian in the first.
+  Quadrature rule;
+  const auto line = gauss(5);
+  for (const auto& [z, w_z] : line)
+    for (const auto& [s, w_s] : line)
+      for (const auto& [t, w_t] : line) {
+        const double a = 0.5 * (1.0 + s), b = 0.5 * (1.0 + t);
+        rule.push_back({{a, b * (1.0 - a), z}, 0.25 * w_s * w_t * w_z * (1.0 - a)});
+      }
+  return rule;
+}
+
 Quadrature face_rule(const std::string& shape) {
   if (shape == "tri3") return triangle_rule(2);
   if (shape == "tri6") return triangle_rule(4);
+  if (shape == "tri7") return collapsed_triangle_rule();
   if (shape == "quad4") return quadrilateral_rule(2);
   if (shape == "quad8" || shape == "quad9") return quadrilateral_rule(3);
   throw InputError("load", format("a face of shape '{}' cannot bear a load", shape),
-                   "Faces are tri3, tri6, quad4, quad8 or quad9");
+                   "Faces are tri3, tri6, tri7, quad4, quad8 or quad9");
 }
 
 }  // namespace polhode::solids

@@ -25,9 +25,13 @@ std::vector<ElementKind> make_kinds() {
       {"tet4", "linear, constant strain", "tet4", tetrahedron_rule(1), tetrahedron_rule(7),
        "tet4 locks: too stiff in bending and when nearly incompressible. Use tet10"},
       {"tet10", "quadratic", "tet10", tetrahedron_rule(2), tetrahedron_rule(7)},
+      {"tet15", "quadratic, with bubbles on the faces and inside", "tet15",
+       tetrahedron_rule(5), tetrahedron_rule(8)},
       {"wedge6", "linear prism, to fill between hexahedra", "wedge6", wedge_rule(), wedge_rule(),
        "wedge6 locks: too stiff in bending and when nearly incompressible. Use it to fill between "
        "hexahedra only, or use tet10"},
+      {"wedge15", "quadratic prism, serendipity", "wedge15", wedge15_rule(),
+       collapsed_wedge_rule(), "", 0.0, 0.495},
   };
   // clang-format on
   for (std::size_t i = 0; i < kinds.size(); ++i) kinds[i].kernel = static_cast<int>(i);

@@ -20,8 +20,10 @@ constexpr double kBulge = 0.15;
 constexpr double kMaxNodes = 2e7;
 
 using ParameterKind = MeshParameter::Kind;
-const std::vector<std::string> kSolids = {"hex8", "hex20", "hex27", "tet4", "tet10", "wedge6"};
-const std::vector<std::string> kSolidsWithoutWedge = {"hex8", "hex20", "hex27", "tet4", "tet10"};
+const std::vector<std::string> kSolids = {"hex8",  "hex20", "hex27",  "tet4",
+                                          "tet10", "tet15", "wedge6", "wedge15"};
+const std::vector<std::string> kSolidsWithoutWedge = {"hex8", "hex20", "hex27",
+                                                      "tet4", "tet10", "tet15"};
 
 int count(double value) { return static_cast<int>(std::lround(value)); }
 

@@ -51,7 +51,8 @@ struct MeshGenerator {
 
 /// Mesh from given numbers.
 /// @param elements  Indices of nodes, the first node is 0; empty type: by their count (hex8, hex20,
-/// hex27, tet4, tet10, wedge6, line2, line3).
+/// hex27, tet4, tet10, wedge6, line2, line3; of 15 nodes tet15 or wedge15, whichever has its nodes
+/// nearer to the middles of its edges).
 /// @param sets  Sets of nodes by name.
 /// @throws InputError for nodes that do not exist, lists of the wrong length, and repeated nodes.
 [[nodiscard]] Mesh inline_mesh(std::string_view where, const std::vector<Vec3>& nodes,

@@ -112,7 +112,44 @@ Cells split(const CellShape& shape, const Hex27& cell) {
     return {all};
   }
   if (shape.name.starts_with("tet")) return tetrahedra(shape, cell);
-  return {{0, 1, 2, 4, 5, 6}, {0, 2, 3, 4, 6, 7}};
+  return {with_edges(shape, {0, 1, 2, 4, 5, 6}), with_edges(shape, {0, 2, 3, 4, 6, 7})};
+}
+
+/// Nodes of tet15 in the middles of the faces and inside, placed by the shape functions of tet10,
+/// so that the cells have the same shape.
+void add_bubble_nodes(Mesh& mesh) {
+  const CellShape &from = cell_shape("tet10"), &to = cell_shape("tet15");
+  std::vector<Vec> weights;
+  for (int a = from.size(); a < to.size(); ++a)
+    weights.push_back(shape_functions(from, to.nodes[static_cast<std::size_t>(a)]));
+  std::map<std::array<int, 3>, int> middles;  // by the corners of a face
+  std::vector<int> all;
+  const auto n = static_cast<std::size_t>(from.size());
+  const std::vector<int> old = std::move(mesh.blocks[0].nodes);
+  for (std::size_t e = 0; e < old.size(); e += n) {
+    const std::span<const int> own = std::span(old).subspan(e, n);
+    std::vector<int> cell(own.begin(), own.end());
+    cell.resize(to.nodes.size());
+    const auto add = [&](int local) {
+      const Vec& N = weights[static_cast<std::size_t>(local) - n];
+      Vec3 x = Vec3::Zero();
+      for (std::size_t a = 0; a < n; ++a)
+        x += N[static_cast<Eigen::Index>(a)] * mesh.nodes[static_cast<std::size_t>(own[a])];
+      mesh.nodes.push_back(x);
+      return static_cast<int>(mesh.nodes.size()) - 1;
+    };
+    for (const CellFace& face : to.faces) {
+      std::array<int, 3> key{};
+      for (std::size_t k = 0; k < 3; ++k) key[k] = own[static_cast<std::size_t>(face.nodes[k])];
+      std::sort(key.begin(), key.end());
+      const auto [place, fresh] = middles.try_emplace(key, 0);
+      if (fresh) place->second = add(face.nodes.back());
+      cell[static_cast<std::size_t>(face.nodes.back())] = place->second;
+    }
+    cell.back() = add(to.size() - 1);
+    all.insert(all.end(), cell.begin(), cell.end());
+  }
+  mesh.blocks[0] = {.type = to.name, .nodes = std::move(all)};
 }
 
 void name_sides(Mesh& mesh, const std::vector<NamedSide>& sides) {
@@ -123,7 +160,10 @@ void name_sides(Mesh& mesh, const std::vector<NamedSide>& sides) {
       const std::size_t n = block.shape().nodes.size();
       for (std::size_t f = 0; f < block.owners.size(); ++f) {
         const std::span<const int> nodes = std::span<const int>(block.nodes).subspan(n * f, n);
-        const bool on_side = std::all_of(nodes.begin(), nodes.end(),
+        // Middles of faces are between the nodes of the edges, not all on a curved side.
+        const std::size_t edges = block.shape().corners + block.shape().edges.size();
+        const std::span<const int> rim = nodes.first(std::min(n, edges));
+        const bool on_side = std::all_of(rim.begin(), rim.end(),
                                          [&](int node) { return side.holds(mesh.nodes[node]); });
         if (on_side) surface.add(block.type, nodes, block.owners[f]);
       }
@@ -149,10 +189,11 @@ std::vector<double> graded(int n, double ratio) {
 
 Mesh lattice_mesh(std::string_view name, const std::vector<Patch>& patches, std::string_view type,
                   const std::vector<NamedSide>& sides) {
-  const CellShape& shape = cell_shape(type);
+  const bool bubbles = type == "tet15";
+  const CellShape& shape = cell_shape(bubbles ? "tet10" : type);
   if (shape.dimension != 3)
     throw InputError(name, format("cells of type '{}' do not fill a solid", type),
-                     "Use hex8, hex20, hex27, tet4, tet10 or wedge6");
+                     "Use hex8, hex20, hex27, tet4, tet10, tet15, wedge6 or wedge15");
   std::vector<Vec3> points;
   std::vector<Hex27> cells;
   for (const Patch& patch : patches) add_patch(patch, points, cells);
@@ -186,6 +227,7 @@ Mesh lattice_mesh(std::string_view name, const std::vector<Patch>& patches, std:
       throw InputError(name, format("element {} would be inverted", at / X.size() + 1),
                        "Use more cells around, or a grading nearer to 1");
   }
+  if (bubbles) add_bubble_nodes(mesh);
   name_sides(mesh, sides);
   return mesh;
 }

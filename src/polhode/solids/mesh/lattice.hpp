@@ -35,7 +35,7 @@ struct NamedSide {
 /// neighbours match for any orientation. Wedges: two per cell, with triangles normal to the third
 /// coordinate; patches must agree on that coordinate.
 ///
-/// @param type  hex8, hex20, hex27, tet4, tet10 or wedge6.
+/// @param type  hex8, hex20, hex27, tet4, tet10, tet15, wedge6 or wedge15.
 /// @throws InputError if the cells would be inverted, or for another type.
 [[nodiscard]] Mesh lattice_mesh(std::string_view name, const std::vector<Patch>& patches,
                                 std::string_view type, const std::vector<NamedSide>& sides);

@@ -19,8 +19,9 @@ namespace {
 /// Shape of an Abaqus element, by its name including the number of its nodes.
 const CellShape* abaqus_shape(std::string_view type) {
   static const std::map<std::string, const char*, std::less<>> solids{
-      {"C3D4", "tet4"},   {"C3D10", "tet10"}, {"C3D6", "wedge6"}, {"C3D8", "hex8"},
-      {"C3D20", "hex20"}, {"C3D27", "hex27"}, {"T3D2", "line2"},  {"B31", "line2"}};
+      {"C3D4", "tet4"},     {"C3D10", "tet10"}, {"C3D6", "wedge6"},
+      {"C3D15", "wedge15"}, {"C3D8", "hex8"},   {"C3D20", "hex20"},
+      {"C3D27", "hex27"},   {"T3D2", "line2"},  {"B31", "line2"}};
   static const std::array<const char*, 10> kFaces{"CPS", "CPE",   "CPEG", "CAX", "S",
                                                   "M3D", "SFM3D", "STRI", "DS",  "R3D"};
   std::size_t end = type.size();
@@ -250,7 +251,7 @@ class AbaqusReader {
     if (!shape)
       throw InputError(
           in_.text_place(keyword_at_), format("elements of type {} are not supported", quote(type)),
-          "Types: C3D4, C3D10, C3D6, C3D8, C3D20, C3D27 with any letters behind, T3D2, "
+          "Types: C3D4, C3D10, C3D6, C3D15, C3D8, C3D20, C3D27 with any letters behind, T3D2, "
           "B31; CPS, CPE, S, M3D and SFM3D of 3, 4, 6, 8 or 9 nodes as surfaces");
     if (shape->dimension == 2) faces_seen_.insert(type);
     const auto set = parameter("ELSET");

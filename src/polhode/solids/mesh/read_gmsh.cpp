@@ -39,7 +39,7 @@ const GmshType* gmsh_type(std::int64_t type) {
       {16, {"quad8", "8-node quadrangle", {}}},
       {17, {"hex20", "20-node hexahedron", {0,  1, 2,  3,  4,  5,  6,  7,  8,  11,
                                             13, 9, 16, 18, 19, 17, 10, 12, 14, 15}}},
-      {18, {nullptr, "15-node prism", {}}},
+      {18, {"wedge15", "15-node prism", {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11}}},
       {19, {nullptr, "13-node pyramid", {}}},
   };
   const auto found = types.find(type);
@@ -49,10 +49,11 @@ const GmshType* gmsh_type(std::int64_t type) {
 const GmshType& supported_type(const GmshFile& file, std::int64_t type) {
   const GmshType* found = gmsh_type(type);
   if (found && found->shape) return *found;
-  file.in.refuse(found ? format("elements of type {} ({}) are not supported", type, found->name)
-                       : format("there is no element type {}", type),
-                 "Mesh with hexahedra of 8, 20 or 27 nodes, tetrahedra of 4 or 10, or prisms of 6",
-                 file.binary);
+  file.in.refuse(
+      found ? format("elements of type {} ({}) are not supported", type, found->name)
+            : format("there is no element type {}", type),
+      "Mesh with hexahedra of 8, 20 or 27 nodes, tetrahedra of 4 or 10, or prisms of 6 or 15",
+      file.binary);
 }
 
 constexpr const char* kVersions = "Save the mesh in format 4.1 or 2.2 (Mesh.MshFileVersion)";

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -23,7 +24,7 @@ constexpr int kVoxel = 11;
 constexpr int kPixel = 8;
 constexpr std::array<int, 8> kVoxelOrder{0, 1, 3, 2, 4, 5, 7, 6};
 /// Permutation between VTK's wedge, whose triangle 0 1 2 faces away from 3 4 5, and ours.
-constexpr std::array<int, 6> kWedgeOrder{0, 2, 1, 3, 5, 4};
+constexpr std::array<int, 15> kWedgeOrder{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
 
 const CellShape* shape_of(std::int64_t vtk) {
   if (vtk == kVoxel) return &cell_shape("hex8");
@@ -196,7 +197,7 @@ class VtuReader {
       if (!shape)
         refuse(piece.topology.at("types").tag,
                format("cell {} has the VTK type {}, which is not supported", c, types.integers[c]),
-               "Mesh with hexahedra (12, 25, 29), tetrahedra (10, 24) or wedges (13)");
+               "Mesh with hexahedra (12, 25, 29), tetrahedra (10, 24) or wedges (13, 26)");
       const std::int64_t size = offsets.integers[c] - last;
       if (size != shape->size())
         refuse(
@@ -265,7 +266,7 @@ class VtuReader {
     int as_given = 0;
     std::vector<Vec3> X(6);
     for (int c = 0; c < mesh_.cell_count(); ++c) {
-      if (&mesh_.shape(c) != &wedge) continue;
+      if (!mesh_.shape(c).name.starts_with("wedge")) continue;
       wedges.push_back(c);
       for (int i = 0; i < 6; ++i) X[static_cast<std::size_t>(i)] = mesh_.position(c, i);
       if (jacobian(wedge, X.data(), {1.0 / 3.0, 1.0 / 3.0, 0.0}) > 0.0) ++as_given;
@@ -275,7 +276,8 @@ class VtuReader {
           "the wedges have the node order of Gmsh and Abaqus, not that of VTK; it is accepted");
       return;
     }
-    for (int c : wedges) mesh_.reorder(c, kWedgeOrder);
+    for (int c : wedges)
+      mesh_.reorder(c, std::span(kWedgeOrder).first(mesh_.shape(c).nodes.size()));
   }
 
   MeshCursor in_;

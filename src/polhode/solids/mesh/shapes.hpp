@@ -20,19 +20,19 @@ struct CellEdge {
 /// One face of a solid. Seen from outside, the corners are counterclockwise; then follow the nodes
 /// in the middles of the edges, then the one in the middle of the face, if the type has them.
 struct CellFace {
-  std::string type;        ///< A 2-D shape: tri3, tri6, quad4, quad8, quad9.
+  std::string type;        ///< A 2-D shape: tri3, tri6, tri7, quad4, quad8, quad9.
   std::vector<int> nodes;  ///< Local numbers.
 };
 
 /// A kind of cell: its nodes and their reference coordinates.
 ///
-/// Nodes are in the order of VTK, corners first, with one exception: triangle 0 1 2 of wedge6 faces
+/// Nodes are in the order of VTK, corners first, with one exception: triangle 0 1 2 of wedges faces
 /// triangle 3 4 5, as in Gmsh and Abaqus, so that the wedge's map has a positive determinant.
 ///
 /// Reference coordinates: lines [−1, 1], quadrilaterals and hexahedra their powers; triangles and
 /// tetrahedra between 0 and 1 along each axis, node 0 at the origin; wedges triangle × [−1, 1].
 struct CellShape {
-  std::string name;                        ///< hex8, hex20, hex27, tet4, tet10, wedge6, quad4, …
+  std::string name;                        ///< hex8, hex20, tet4, tet15, wedge6, quad4, …
   int dimension;                           ///< 0 point, 1 line, 2 face, 3 solid.
   int corners;                             ///< Nodes 0 … corners − 1 are corners.
   int order;                               ///< 1 linear, 2 quadratic.
@@ -40,7 +40,7 @@ struct CellShape {
   std::vector<Vec3> nodes;                 ///< Reference coordinates of each node [-].
   std::vector<CellEdge> edges;             ///< Of lines: the line itself.
   std::vector<CellFace> faces;             ///< Of solids; outward. Empty for others.
-  std::vector<std::array<int, 3>> powers;  ///< Monomials that span the shape functions.
+  std::vector<std::array<int, 3>> powers;  ///< Monomials of the shape functions.
   Mat coefficients;                        ///< Column a: coefficients of N_a over the monomials.
   std::vector<Mat> slopes;  ///< shape_gradients() at each node, and finally in the middle.
 
