@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/mjcf_bodies.hpp>
 
+#include <cmath>
+
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/importers/mjcf_inertia.hpp>
@@ -9,6 +11,13 @@
 namespace polhode::io {
 
 using geometry::MassProperties;
+
+namespace {
+
+/// Copies of all <replicate> of a file.
+constexpr int kMostCopies = 100000;
+
+}  // namespace
 
 void MjcfRefusals::add(const XmlFile::Element& at, const std::string& what,
                        const std::string& hint) {
@@ -76,16 +85,16 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
     const std::string_view name = inner->Name();
     if (name == "geom") {
       static_cast<void>(xml.children(e, "geom"));
-      const MjcfGeom geom =
-          geoms_.read({file_, *inner, {"geom"}, place.child_class}, place.frame, massive);
+      const MjcfTag tag{file_, *inner, {"geom"}, place.child_class, place.suffix};
+      const MjcfGeom geom = geoms_.read(tag, place.frame, massive);
       if (geom.ellipsoid) ellipsoids_.push_back(inner);
       if (geom.mass) {
         parts.mass.push_back(*geom.mass);
         parts.axes = geom.axes;
       }
-      if (const auto own = xml.text(*inner, "name"))
-        touching_[*own] = {place.link, geom.friction, geom.dimensions};
-      if (const auto own = xml.text(*inner, "name"); own && geom.shape)
+      const auto own = tag.name();
+      if (own) touching_[*own] = {place.link, geom.friction, geom.dimensions};
+      if (own && geom.shape)
         if (const std::string& kind = geom.shape->kind; kind == "sphere" || kind == "cylinder")
           wraps_[*own] = {place.link, geom.shape->pose, kind == "sphere",
                           0.5 * geom.shape->sizes[0]};
@@ -98,12 +107,11 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
       if (geom.shape && geom.seen) link.visual.push_back(*geom.shape);
       if (geom.shape && geom.touches) link.collision.push_back(*geom.shape);
     } else if (name == "site") {
-      const MjcfTag tag{file_, *inner, {"site"}, place.child_class};
+      const MjcfTag tag{file_, *inner, {"site"}, place.child_class, place.suffix};
       Pose frame = tag.pose();
       if (const auto ends = tag.numbers("fromto", 6, 6); !ends.empty())
         frame.p = 0.5 * Vec3(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
-      if (const auto site = xml.text(*inner, "name"))
-        sites_[*site] = {place.link, place.frame * frame};
+      if (const auto site = tag.name()) sites_[*site] = {place.link, place.frame * frame};
       xml.skip(*inner);
     } else if (name == "frame") {
       static_cast<void>(xml.children(e, "frame"));
@@ -111,13 +119,15 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
       file_.ignored.attributes(*inner, {"name"});
       read_content(*inner,
                    {place.link, place.body, place.frame * tag.pose(),
-                    xml.text(*inner, "childclass").value_or(place.child_class)},
+                    xml.text(*inner, "childclass").value_or(place.child_class), place.suffix},
                    parts, massive);
+    } else if (name == "replicate") {
+      static_cast<void>(xml.children(e, "replicate"));
+      read_copies(*inner, place, parts, massive);
     } else if (name == "body") {
       static_cast<void>(xml.children(e, "body"));
       read_body(*inner, place);
-    } else if (name == "composite" || name == "flexcomp" || name == "replicate" ||
-               name == "attach" || name == "plugin") {
+    } else if (name == "composite" || name == "flexcomp" || name == "attach" || name == "plugin") {
       xml.skip(*inner);
       refusals_.add(*inner, format("<{}> is not read", name),
                     "Let MuJoCo save the model, which expands some of these.");
@@ -163,9 +173,36 @@ void MjcfBodies::bound(MassProperties& mass) const {
   mass.inertia = p.axes * p.moments.asDiagonal() * p.axes.transpose();
 }
 
+/// Copies of bodies, geoms and sites, each moved from the one before. Names get the number of the
+/// copy, with as many digits as their count.
+void MjcfBodies::read_copies(const Element& e, const Place& place, Parts& parts, bool massive) {
+  XmlFile& xml = file_.xml;
+  const double count = xml.number(e, "count").value_or(0.0);
+  if (!(count >= 1.0) || count != std::floor(count) || copies_ + count > kMostCopies) {
+    xml.fault(e, format("<replicate> has the count {}", count),
+              format("Give a whole number from 1, up to {} for all of them.", kMostCopies));
+    return;
+  }
+  if (e.FirstChildElement("joint") != nullptr || e.FirstChildElement("freejoint") != nullptr)
+    xml.fault(e, "<replicate> has a joint that is not in a body", "Put it into a <body>.");
+  const std::string separator = xml.text(e, "sep").value_or("");
+  const Pose move{xml.vector(e, "offset").value_or(Vec3::Zero()),
+                  MjcfTag{file_, e, {}, ""}.rotation()};
+  const std::size_t digits = std::to_string(static_cast<int>(count)).size();
+  Place copy = place;
+  for (int k = 0; k < static_cast<int>(count); ++k) {
+    ++copies_;
+    std::string number = std::to_string(k);
+    number.insert(0, digits - number.size(), '0');
+    copy.suffix = separator + number + place.suffix;
+    read_content(e, copy, parts, massive);
+    copy.frame = copy.frame * move;
+  }
+}
+
 void MjcfBodies::read_body(const Element& e, const Place& parent) {
   XmlFile& xml = file_.xml;
-  const std::string given = xml.text(e, "name").value_or("");
+  const std::string given = MjcfTag{file_, e, {}, "", parent.suffix}.name().value_or("");
   const std::string child_class = xml.text(e, "childclass").value_or(parent.child_class);
   file_.ignored.attributes(e, {"user", "sleep"});
   if (!given.empty() && frames_.contains(given))
@@ -190,11 +227,10 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
   for (std::size_t k = 0; k < std::max<std::size_t>(1, joints.size()); ++k) {
     RobotJoint joint;
     joint.at = joints.empty() ? &e : joints[k];
-    joint.name = joints.empty()
-                     ? name + "_weld"
-                     : xml.text(*joints[k], "name")
-                           .value_or(joints.size() == 1 ? name + "_joint"
-                                                        : format("{}_joint_{}", name, k + 1));
+    joint.name = joints.empty() ? name + "_weld"
+                                : MjcfTag{file_, *joints[k], {}, "", parent.suffix}.name().value_or(
+                                      joints.size() == 1 ? name + "_joint"
+                                                         : format("{}_joint_{}", name, k + 1));
     while (!joint_names_.insert(joint.name).second) joint.name += "_2";
     joint.type = "fixed";
     joint.origin = k == 0 ? pose : Pose{};
@@ -217,7 +253,7 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
   const bool from_geoms = how == MjcfCompiler::FromGeoms::always ||
                           (how == MjcfCompiler::FromGeoms::automatic && given_mass == nullptr);
   Parts parts;
-  read_content(e, {above, body, {}, child_class}, parts, from_geoms);
+  read_content(e, {above, body, {}, child_class, parent.suffix}, parts, from_geoms);
   MassProperties mass;
   Mat3 axes = Mat3::Identity();
   if (given_mass != nullptr) mass = inertial(*given_mass, axes);

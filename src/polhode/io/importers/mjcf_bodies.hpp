@@ -72,6 +72,7 @@ class MjcfBodies {
     int body;    ///< Index of the link.
     Pose frame;  ///< Of the tag in the coordinates of the link.
     std::string child_class;
+    std::string suffix = {};  ///< Of names, in <replicate>.
   };
   /// Mass of the geoms of a body, in its coordinates.
   struct Parts {
@@ -81,6 +82,7 @@ class MjcfBodies {
   [[nodiscard]] int add_link(const std::string& name, const Element& at);
   void read_content(const Element& e, const Place& place, Parts& parts, bool massive);
   void read_body(const Element& e, const Place& parent);
+  void read_copies(const Element& e, const Place& place, Parts& parts, bool massive);
   void read_joint(const MjcfTag& tag, RobotJoint& joint);
   void read_limits(const MjcfTag& tag, RobotJoint& joint);
   void read_ball(const MjcfTag& tag, RobotJoint& joint);
@@ -101,6 +103,7 @@ class MjcfBodies {
   std::map<std::string, Mat3> axes_;
   std::vector<const Element*> ellipsoids_;
   std::set<std::string> joint_names_;
+  int copies_ = 0;  ///< Of all <replicate>.
   /// A joint whose spring and damper follow from a time constant and a damping ratio.
   struct Tuned {
     const Element* at;

@@ -121,6 +121,12 @@ const Element* MjcfFile::giver(const Element& e, const char* attribute,
   return nullptr;
 }
 
+std::optional<std::string> MjcfTag::name() const {
+  auto own = file.xml.text(e, "name");
+  if (own && !own->empty()) *own += suffix;
+  return own;
+}
+
 bool MjcfTag::has(const char* attribute) const {
   return file.giver(e, attribute, kinds, child_class) != nullptr;
 }

@@ -69,7 +69,10 @@ struct MjcfTag {
   const XmlFile::Element& e;
   std::vector<std::string> kinds;  ///< Names of its tag in defaults.
   std::string child_class;         ///< Of the bodies that contain it.
+  std::string suffix = {};         ///< Of its name, as of one of several copies.
 
+  /// Its name, with the suffix; nothing if it has none.
+  [[nodiscard]] std::optional<std::string> name() const;
   [[nodiscard]] bool has(const char* attribute) const;
   [[nodiscard]] std::string text(const char* attribute, const std::string& standard = "") const;
   [[nodiscard]] double number(const char* attribute, double standard) const;

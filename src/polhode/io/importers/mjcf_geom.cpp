@@ -129,8 +129,7 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   geom.seen = group <= kLastShownGroup;
   const std::pair bits{static_cast<int>(tag.number("contype", 1.0)),
                        static_cast<int>(tag.number("conaffinity", 1.0))};
-  geom.touches =
-      bits.first != 0 || bits.second != 0 || in_pairs_.contains(xml.text(e, "name").value_or(""));
+  geom.touches = bits.first != 0 || bits.second != 0 || in_pairs_.contains(tag.name().value_or(""));
   if (const std::vector<double> friction = tag.numbers("friction", 1, 3); !friction.empty())
     std::copy(friction.begin(), friction.end(), geom.friction.begin());
   geom.dimensions = tag.number("condim", 3.0);
@@ -138,7 +137,7 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   RobotShape shape;
   shape.at = &e;
   shape.kind = type;
-  shape.name = xml.text(e, "name").value_or("");
+  shape.name = tag.name().value_or("");
   shape.contact_bits = bits;
   shape.friction = geom.dimensions >= 3.0 ? geom.friction[0] : 0.0;
   Pose pose = tag.pose();
