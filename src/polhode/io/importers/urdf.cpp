@@ -17,6 +17,11 @@ namespace {
 
 using Element = XmlFile::Element;
 
+/// Types of <joint>, and of Drake's <drake:joint>.
+const std::vector<std::string> kJointTypes{"revolute", "continuous", "prismatic",
+                                           "fixed",    "floating",   "planar"};
+const std::vector<std::string> kDrakeTypes{"floating", "ball", "planar", "screw", "universal"};
+
 /// Reader of one file; errors go to its diagnostics.
 class RobotReader {
  public:
@@ -34,7 +39,8 @@ class RobotReader {
     robot.name = xml_.text(root, "name").value_or("");
     ignored_.attributes(root, {"version"});
     for (const Element* e : xml_.children(root, "link")) read_link(*e, robot);
-    for (const Element* e : xml_.children(root, "joint")) read_joint(*e, robot);
+    for (const Element* e : xml_.children(root, "joint")) read_joint(*e, kJointTypes, robot);
+    for (const Element* e : xml_.children(root, "drake:joint")) read_joint(*e, kDrakeTypes, robot);
     for (const char* tag : {"loop_joint", "loop"})
       for (const Element* e : xml_.children(root, tag)) read_loop(*e, robot);
     if (const Element* e = root.FirstChildElement("constraint"))
@@ -175,15 +181,14 @@ class RobotReader {
     return Vec3::UnitX();
   }
 
-  void read_joint(const Element& e, Robot& robot) {
+  /// @param types  Those of the tag.
+  void read_joint(const Element& e, const std::vector<std::string>& types, Robot& robot) {
     RobotJoint joint;
     joint.at = &e;
     joint.name = xml_.required_text(e, "name");
     joint.type = xml_.required_text(e, "type");
     if (!joint.name.empty() && !joints_.insert(joint.name).second)
       xml_.fault(e, format("the joint {} stands twice", quote(joint.name)), "Rename one of them.");
-    static const std::vector<std::string> types{"revolute", "continuous", "prismatic",
-                                                "fixed",    "floating",   "planar"};
     if (!joint.type.empty() && std::find(types.begin(), types.end(), joint.type) == types.end())
       xml_.fault(
           e, format("the joint {} has the unknown type {}", quote(joint.name), quote(joint.type)),
@@ -199,9 +204,10 @@ class RobotReader {
     joint.child = link_of("child");
     joint.origin = read_origin(e);
     joint.axis = read_axis(e, joint.type != "fixed" && joint.type != "floating");
+    if (types == kDrakeTypes) read_drake_joint(e, joint);
     read_limit(e, joint);
     if (const Element* dynamics = xml_.child(e, "dynamics")) {
-      joint.damping = not_negative(*dynamics, "damping");
+      joint.damping = has_damping(*dynamics, joint) ? not_negative(*dynamics, "damping") : 0.0;
       joint.friction = not_negative(*dynamics, "friction");
       if (joint.type == "fixed" && (joint.damping > 0.0 || joint.friction > 0.0))
         ignored_.add(*dynamics, "<dynamics> of a fixed joint", "has no influence on the motion");
@@ -209,6 +215,32 @@ class RobotReader {
     if (const Element* mimic = xml_.child(e, "mimic")) read_mimic(*mimic, joint);
     ignored_.skip(e, {"calibration", "safety_controller", "gazebo", "hardwareInterface"});
     robot.joints.push_back(std::move(joint));
+  }
+
+  /// Drake's joints: a plane across z, angles about x and then y, a thread along the axis.
+  void read_drake_joint(const Element& e, RobotJoint& joint) {
+    if (joint.type == "planar") joint.axis = Vec3::UnitZ();
+    if (joint.type == "universal") joint.axis = Vec3::UnitX();
+    if (joint.type == "ball") joint.type = "spherical";
+    if (joint.type != "screw") return;
+    const Element* pitch = xml_.child(e, "drake:screw_thread_pitch");
+    if (pitch != nullptr && pitch->Attribute("value") != nullptr)
+      joint.pitch = xml_.number(*pitch, "value").value_or(0.0);
+    else
+      xml_.fault(e, format("the screw {} has no <drake:screw_thread_pitch>", quote(joint.name)),
+                 "Write <drake:screw_thread_pitch value=\"...\"/>, in metres per turn.");
+  }
+
+  /// Whether the damping of a joint is one number for all its motions. Drake's planar joint has
+  /// three of them, and a universal one damps two angles.
+  bool has_damping(const Element& e, const RobotJoint& joint) {
+    if (joint.type != "planar" && joint.type != "universal") return true;
+    const auto values = xml_.numbers(e, "damping", 1, 3);
+    if (values && std::any_of(values->begin(), values->end(), [](double c) { return c != 0.0; }))
+      xml_.fault(e, format("the {} joint {} has a damping", joint.type, quote(joint.name)),
+                 joint.type == "planar" ? "Add a bushing, or use two slides and a hinge."
+                                        : "Use two hinges with a link between them.");
+    return false;
   }
 
   double not_negative(const Element& e, const char* attribute) {
