@@ -23,6 +23,7 @@ class MeshFiles : public Exports {
     std::filesystem::create_directories(folder_ / "out/robot");
     std::ofstream(folder_ / "parts/wedge.obj") << kWedge;
     std::ofstream(folder_ / "models/model.yaml") << R"(format: 1
+gravity: [0, 0, -9.81]
 bodies:
   base: {fixed: true}
   arm:

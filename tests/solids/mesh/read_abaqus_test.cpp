@@ -122,11 +122,11 @@ TEST(ReadAbaqus, LocatesErrors) {
   EXPECT_EQ(message(two_bricks("*INCLUDE, INPUT=more.inp\n")),
             "part.inp:24:1: *INCLUDE is not supported, and the mesh depends on it. Write the nodes "
             "and elements out in one file.");
-  EXPECT_EQ(
-      message(two_bricks("*ELEMENT, TYPE=C3D15\n1, 100\n")),
-      "part.inp:24:1: elements of type 'C3D15' are not supported. Types: C3D4, C3D10, C3D6, "
-      "C3D8, C3D20, C3D27 with any letters behind, T3D2, B31; CPS, CPE, S, M3D and SFM3D of 3, "
-      "4, 6, 8 or 9 nodes as surfaces.");
+  EXPECT_EQ(message(two_bricks("*ELEMENT, TYPE=C3D13\n1, 100\n")),
+            "part.inp:24:1: elements of type 'C3D13' are not supported. Types: C3D4, C3D10, C3D6, "
+            "C3D15, C3D8, C3D20, C3D27 with any letters behind, T3D2, B31; CPS, CPE, S, M3D and "
+            "SFM3D of 3, "
+            "4, 6, 8 or 9 nodes as surfaces.");
   EXPECT_EQ(
       message(two_bricks("*ELEMENT, TYPE=C3D4\n30, 100, 101, 102, 999\n")),
       "part.inp:25:1: element 30 names node 999, which does not exist. The file has 12 nodes.");

@@ -34,7 +34,7 @@ TEST(GmshErrors, AreLocated) {
   EXPECT_EQ(
       message("a.msh", gmsh2(kNodes, "1\n1 7 2 0 1 1 2 3 4 5\n")),
       "a.msh:13:3: elements of type 7 (5-node pyramid) are not supported. Mesh with hexahedra "
-      "of 8, 20 or 27 nodes, tetrahedra of 4 or 10, or prisms of 6.");
+      "of 8, 20 or 27 nodes, tetrahedra of 4 or 10, or prisms of 6 or 15.");
   EXPECT_THAT(message("a.msh", gmsh2(kNodes, "1\n1 99 2 0 1 1 2 3 4 5\n")),
               StartsWith("a.msh:13:3: there is no element type 99."));
   EXPECT_EQ(message("a.msh", gmsh2(kNodes, "1\n1 4 2 0 1 1 2 3 7\n")),
@@ -128,7 +128,7 @@ TEST(VtuErrors, AreLocated) {
   EXPECT_EQ(
       message("a.vtu", vtu(kPoints, cells("0 1 2 3", "4", "14"))),
       "a.vtu:9:1: cell 0 has the VTK type 14, which is not supported. Mesh with hexahedra (12, "
-      "25, 29), tetrahedra (10, 24) or wedges (13).");
+      "25, 29), tetrahedra (10, 24) or wedges (13, 26).");
   EXPECT_THAT(message("a.vtu", vtu(kPoints, cells("0 1 2 4", "4", "10"))),
               StartsWith("a.vtu:7:1: cell 0 names point 4; the first is 0, the last 3."));
   EXPECT_THAT(message("a.vtu", vtu(kPoints, cells("0 1 2", "3", "10"))),
