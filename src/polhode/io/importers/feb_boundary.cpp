@@ -97,9 +97,11 @@ void FebSolids::read_boundary(const Element& section) {
                       type == "prescribed displacement",
                       {}};
     std::array<bool, 3> components{};
+    const FebMap* map = nullptr;
     if (condition.prescribed) {
       const std::string dof = lower_case(file.text(*e, "dof"));
-      const FebValue value = file.value(*e, "value");
+      map = map_of(*e, "value", file.xml.text(*e, "node_set").value_or(""));
+      const FebValue value = value_of(*e, "value");
       static_cast<void>(file.boolean(*e, "relative", false));  // The first step starts at zero.
       const int k = component_of(dof);
       if (k < 0) {
@@ -112,6 +114,10 @@ void FebSolids::read_boundary(const Element& section) {
       components = {file.boolean(*e, "x_dof", false), file.boolean(*e, "y_dof", false),
                     file.boolean(*e, "z_dof", false)};
     }
+    if (map != nullptr && nodes != nullptr) {
+      hold_by(*map, *nodes, condition);
+      continue;
+    }
     holds_.push_back(std::move(condition));
     for (int k = 0; k < 3; ++k)
       if (nodes != nullptr && components[static_cast<std::size_t>(k)]) hold(*nodes, k, number);
@@ -122,6 +128,22 @@ void FebSolids::read_boundary(const Element& section) {
       file.ignored.add(section, "a displacement of nodes of no deformable solid", "moves nothing");
       break;
     }
+}
+
+/// A condition for each value of a map, on the nodes that have it.
+void FebSolids::hold_by(const FebMap& map, const std::vector<int>& nodes,
+                        const FebHold& condition) {
+  std::map<double, std::vector<int>> by_value;
+  for (std::size_t k = 0; k < nodes.size(); ++k) by_value[map.values[k]].push_back(nodes[k]);
+  if (!is_short(*condition.at, by_value.size())) return;
+  for (const auto& [value, own] : by_value) {
+    FebHold part = condition;
+    for (FebValue& v : part.values) v.factor *= value;
+    holds_.push_back(part);
+    for (int k = 0; k < 3; ++k)
+      if (part.values[static_cast<std::size_t>(k)].at != nullptr)
+        hold(own, k, static_cast<int>(holds_.size()) - 1);
+  }
 }
 
 void FebSolids::read_nodal_load(const Element& e) {
@@ -258,13 +280,31 @@ void FebSolids::read_surface_load(const Element& e) {
   }
   if (file.boolean(e, "shell_bottom", false))
     file.refuse(e, "<shell_bottom> is not read", "Mesh the part with solid elements.");
+  const FebMap* map = type == "pressure" ? map_of(e, "pressure", name) : nullptr;
+  if (map == nullptr) {
+    put_on(e, type, 1.0, found->second);
+    return;
+  }
+  std::map<double, std::vector<std::vector<int>>> by_value;
+  for (std::size_t k = 0; k < found->second.size(); ++k)
+    if (map->values[k] != 0.0) by_value[map->values[k]].push_back(found->second[k]);
+  if (!is_short(e, by_value.size())) return;
+  for (const auto& [value, facets] : by_value) put_on(e, type, value, facets);
+}
+
+/// Adds a load on facets to each of the solids that have them.
+void FebSolids::put_on(const Element& e, const std::string& type, double factor,
+                       const std::vector<std::vector<int>>& all) {
+  FebFile& file = model_.file;
   std::map<const FebSolid*, std::vector<std::vector<int>>> facets;
-  for (const std::vector<int>& facet : found->second) {
+  for (const std::vector<int>& facet : all) {
     const auto solid = std::find_if(solids_.begin(), solids_.end(), [&](const FebSolid& s) {
       return std::all_of(facet.begin(), facet.end(), [&](int n) { return s.place.contains(n); });
     });
     if (solid == solids_.end()) {
-      file.refuse(e, format("the surface {} is not that of a deformable solid", quote(name)),
+      file.refuse(e,
+                  format("the surface {} is not that of a deformable solid",
+                         quote(file.xml.text(e, "surface").value_or(""))),
                   "Use rigid loads on rigid bodies.");
       return;
     }
@@ -275,7 +315,7 @@ void FebSolids::read_surface_load(const Element& e) {
     SourceNode selection;
     double sign = 1.0;
     if (own != facets.end() && select(e, solid, own->second, selection, sign))
-      put_surface_load(e, type, solid, std::move(selection), sign);
+      put_surface_load(e, type, solid, std::move(selection), sign * factor);
   }
 }
 
@@ -290,7 +330,7 @@ void FebSolids::put_surface_load(const Element& e, const std::string& type, cons
   make.put(load, "surface", std::move(selection));
   if (type == "pressure") {
     file.ignored.skip(e, {"symmetric_stiffness"});
-    make.put(load, "pressure", model_.curves.node(file.value(e, "pressure"), sign));
+    make.put(load, "pressure", model_.curves.node(value_of(e, "pressure"), sign));
     make.put(load, "follower", make.boolean(!linear));
   } else {
     FebValue scale = file.value(e, "scale", 1.0);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data of elements of an FEBio file: axes and directions of fibres.
+// Data of elements, nodes and surfaces of an FEBio file: directions of fibres, values of conditions
+// and loads.
+#include <algorithm>
+
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/importers/feb_model.hpp>
@@ -9,6 +12,9 @@ namespace polhode::io {
 namespace {
 
 using Element = XmlFile::Element;
+
+/// Different values of a map: each becomes a condition or load.
+constexpr std::size_t kMostValues = 1000;
 
 /// Numbers of the elements of a part or a set; null if there is none of this name.
 const std::vector<std::int64_t>* elements_named(const FebMesh& mesh, const std::string& name) {
@@ -36,8 +42,7 @@ std::optional<Mat3> axes_of(FebFile& file, const Element& e) {
 void FebSolids::read_mesh_data(const Element& section) {
   FebFile& file = model_.file;
   for (const char* tag : {"NodeData", "SurfaceData"})
-    for (const Element* e : file.xml.children(section, tag))
-      file.refuse(*e, format("<{}> is not read", tag), "Give one value for all.");
+    for (const Element* e : file.xml.children(section, tag)) read_map(*e);
   for (const Element* data : file.xml.children(section, "ElementData")) {
     file.ignored.attributes(*data, {"name", "datatype", "format"});
     std::string type = file.xml.text(*data, "type").value_or("");
@@ -76,6 +81,87 @@ void FebSolids::read_mesh_data(const Element& section) {
       }
     }
   }
+}
+
+/// Numbers of <NodeData> or <SurfaceData>, one for each node or facet.
+void FebSolids::read_map(const Element& data) {
+  FebFile& file = model_.file;
+  const bool nodes = std::string_view(data.Name()) == "NodeData";
+  const std::string name = file.xml.required_text(data, "name");
+  FebMap map{&data, file.xml.required_text(data, nodes ? "node_set" : "surface"), {}};
+  for (const char* kind : {"data_type", "datatype"})
+    if (const auto type = file.xml.text(data, kind); type && *type != "scalar") {
+      file.refuse(data, format("<{}> of data_type {} is not read", data.Name(), quote(*type)),
+                  "Give a scalar for each component.");
+      return;
+    }
+  file.ignored.attributes(data, {"format"});
+  std::size_t count = 0;
+  if (nodes) {
+    const auto found = model_.mesh.node_sets.find(map.set);
+    count = found == model_.mesh.node_sets.end() ? 0 : found->second.size();
+  } else {
+    const auto found = model_.mesh.surfaces.find(map.set);
+    count = found == model_.mesh.surfaces.end() ? 0 : found->second.size();
+  }
+  std::vector<char> given(count, 0);
+  map.values.resize(count);
+  for (const Element* e : file.children(data)) {
+    const std::int64_t lid = file.id(*e, "lid").value_or(0);
+    const auto value = file.numbers(*e, 1, 1);
+    if (!value) return;
+    if (lid < 1 || lid > static_cast<std::int64_t>(count)) {
+      file.xml.fault(*e, format("{} has {} members, and none of this lid", quote(map.set), count),
+                     "Number them from 1.");
+      return;
+    }
+    map.values[static_cast<std::size_t>(lid - 1)] = (*value)[0];
+    given[static_cast<std::size_t>(lid - 1)] = 1;
+  }
+  if (count == 0 || std::find(given.begin(), given.end(), 0) != given.end())
+    file.xml.fault(
+        data, format("the map {} has no value for a member of {}", quote(name), quote(map.set)),
+        "Give one for each.");
+  else if (!maps_.try_emplace(name, std::move(map)).second)
+    file.xml.fault(data, format("the map {} stands twice", quote(name)), "Rename one of them.");
+}
+
+const FebMap* FebSolids::map_of(const Element& parent, const char* tag, const std::string& set) {
+  FebFile& file = model_.file;
+  const Element* e = file.child(parent, tag);
+  if (e == nullptr || file.xml.text(*e, "type").value_or("") != "map") return nullptr;
+  const std::string name = XmlFile::content(*e).value_or("");
+  const auto found = maps_.find(name);
+  if (found == maps_.end()) {
+    std::vector<std::string> names;
+    for (const auto& [known, map] : maps_) names.push_back(known);
+    file.xml.fault(*e, format("there is no map {}", quote(name)),
+                   did_you_mean(name, names) + "Give the name of a <NodeData> or <SurfaceData>.");
+    return nullptr;
+  }
+  if (found->second.set != set) {
+    file.xml.fault(
+        *e,
+        format("the map {} is of {}, not of {}", quote(name), quote(found->second.set), quote(set)),
+        "Give it for the same set.");
+    return nullptr;
+  }
+  return &found->second;
+}
+
+FebValue FebSolids::value_of(const Element& parent, const char* tag) {
+  FebFile& file = model_.file;
+  const Element* e = file.child(parent, tag);
+  if (e == nullptr || file.xml.text(*e, "type").value_or("") != "map")
+    return file.value(parent, tag);
+  return {1.0, file.controller(*e), e};
+}
+
+bool FebSolids::is_short(const Element& e, std::size_t values) {
+  if (values <= kMostValues) return true;
+  model_.file.refuse(e, format("a map of {} different values is not read", values),
+                     format("Round them to at most {} values.", kMostValues));
+  return false;
 }
 
 void FebSolids::put_fibres(const FebSolid& solid, const NodeBuilder& make, SourceNode& node) const {

@@ -55,6 +55,13 @@ struct FebElementData {
   std::optional<Vec3> fibre;
 };
 
+/// Values at the nodes of a set or on the facets of a surface, in their order.
+struct FebMap {
+  const XmlFile::Element* at = nullptr;
+  std::string set;
+  std::vector<double> values;
+};
+
 /// A boundary condition on displacements.
 struct FebHold {
   std::string name;
@@ -80,7 +87,7 @@ class FebSolids {
   void assemble();
   /// Reads <Boundary>.
   void read_boundary(const XmlFile::Element& section);
-  /// Reads <MeshData>: directions of fibres by element.
+  /// Reads <MeshData>: directions of fibres by element, maps of nodes and surfaces.
   void read_mesh_data(const XmlFile::Element& section);
   /// Makes springs of trusses.
   void add_trusses();
@@ -135,6 +142,15 @@ class FebSolids {
   /// Ends of a load between nodes, as `bodies` and `at`; false, with an error, if one is nowhere.
   bool put_ends(const XmlFile::Element& e, const std::string& what, const std::array<int, 2>& ends,
                 SourceNode& load);
+  void read_map(const XmlFile::Element& data);
+  /// Map that a tag names with type="map", of the set of that name; null if it has a value, or
+  /// after an error.
+  const FebMap* map_of(const XmlFile::Element& parent, const char* tag, const std::string& set);
+  /// Value of a tag, or of one with a map the factor 1 with its load controller.
+  FebValue value_of(const XmlFile::Element& parent, const char* tag);
+  /// Whether a map has few enough different values; an error otherwise.
+  bool is_short(const XmlFile::Element& e, std::size_t values);
+  void hold_by(const FebMap& map, const std::vector<int>& nodes, const FebHold& condition);
   /// Lets a boundary condition hold a component of nodes.
   void hold(const std::vector<int>& nodes, int component, int hold);
   /// Faces of a solid as a selection; an error if the facets are not on its boundary.
@@ -143,11 +159,14 @@ class FebSolids {
               const std::vector<std::vector<int>>& facets, SourceNode& selection, double& sign);
   void put_surface_load(const XmlFile::Element& e, const std::string& type, const FebSolid& solid,
                         SourceNode selection, double sign);
+  void put_on(const XmlFile::Element& e, const std::string& type, double factor,
+              const std::vector<std::vector<int>>& facets);
 
   FebModel& model_;
   std::map<std::string, FebMaterial> materials_;                   ///< By name in the file.
   std::map<std::string, FebTruss> trusses_;                        ///< Likewise.
   std::unordered_map<std::int64_t, FebElementData> element_data_;  ///< By number of the element.
+  std::map<std::string, FebMap> maps_;
   std::set<std::string> material_names_, solid_names_, hold_names_;
   std::vector<FebSolid> solids_;
   std::vector<FebHold> holds_;
