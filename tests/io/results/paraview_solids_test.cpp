@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/results/paraview.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -117,23 +118,30 @@ TEST(SolidsWriter, WritesFieldsOfContact) {
 /// Node order of VTK's cells of positive volume: the normal of the triangle 0 1 2 of a wedge points
 /// outwards.
 TEST(SolidsWriter, OrdersNodesOfWedgesAsVtkDoes) {
-  const test::Scratch scratch;
-  const solids::Mesh wedge =
-      solids::make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");
-  SolidReport report = report_of(wedge);
-  report.position = wedge.nodes;
-  io::SolidsWriter writer(scratch / "view", "solids", {"w"}, {&wedge});
-  writer.append(0.0, {report});
-  writer.close();
-  const std::string vtu = io::read_file(scratch / "view/solids/000000.vtu");
-  const auto cells = array<std::int64_t>(vtu, "<Cells>", "connectivity");
-  ASSERT_EQ(cells.size(), 12u);
-  for (std::size_t at = 0; at < 12; at += 6) {
-    const auto X = [&](std::size_t k) {
-      return wedge.nodes[static_cast<std::size_t>(cells[at + k])];
-    };
-    const Vec3 normal = (X(1) - X(0)).cross(X(2) - X(0));
-    EXPECT_LT(normal.dot(X(3) - X(0)), 0.0);
+  constexpr std::array<std::array<std::size_t, 2>, 9> kEdges{
+      {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}};
+  for (const std::size_t size : {std::size_t{6}, std::size_t{15}}) {
+    const test::Scratch scratch;
+    const solids::Mesh wedge = solids::make_mesh(
+        "w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge" + std::to_string(size));
+    SolidReport report = report_of(wedge);
+    report.position = wedge.nodes;
+    io::SolidsWriter writer(scratch / "view", "solids", {"w"}, {&wedge});
+    writer.append(0.0, {report});
+    writer.close();
+    const std::string vtu = io::read_file(scratch / "view/solids/000000.vtu");
+    const auto cells = array<std::int64_t>(vtu, "<Cells>", "connectivity");
+    ASSERT_EQ(cells.size(), 2 * size);
+    EXPECT_EQ(array<std::uint8_t>(vtu, "<Cells>", "types")[0], size == 6 ? 13 : 26);
+    for (std::size_t at = 0; at < cells.size(); at += size) {
+      const auto X = [&](std::size_t k) {
+        return wedge.nodes[static_cast<std::size_t>(cells[at + k])];
+      };
+      const Vec3 normal = (X(1) - X(0)).cross(X(2) - X(0));
+      EXPECT_LT(normal.dot(X(3) - X(0)), 0.0);
+      for (std::size_t k = 6; k < size; ++k)
+        EXPECT_EQ(X(k), Vec3(0.5 * (X(kEdges[k - 6][0]) + X(kEdges[k - 6][1])))) << k;
+    }
   }
 }
 
