@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/mjcf.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -12,6 +13,7 @@
 #include <polhode/io/importers/mjcf_contacts.hpp>
 #include <polhode/io/importers/mjcf_keyframe.hpp>
 #include <polhode/io/importers/mjcf_medium.hpp>
+#include <polhode/io/importers/mjcf_options.hpp>
 #include <polhode/io/importers/mjcf_sensors.hpp>
 #include <polhode/io/importers/mjcf_tendons.hpp>
 #include <polhode/io/importers/write_robot.hpp>
@@ -25,7 +27,8 @@ using Element = XmlFile::Element;
 /// Reader of options and equalities, and of all others in order.
 class MjcfReader {
  public:
-  MjcfReader(XmlFile& xml, const ImportOptions& options, std::vector<ImportNote>& notes)
+  /// @param options  Those that <option> of the file switches off become false.
+  MjcfReader(XmlFile& xml, ImportOptions& options, std::vector<ImportNote>& notes)
       : xml_(xml), options_(options), file_(xml, notes), refusals_(file_, options.allow_partial) {}
 
   Robot read(const std::string& folder) {
@@ -34,48 +37,46 @@ class MjcfReader {
     if (options_.base != "fixed")
       xml_.fault(xml_.root(), "an MJCF file says itself which bodies move freely",
                  "Leave import.base out.");
-    read_options();
+    read_options(file_, medium_, robot_, options_);
     MjcfGeoms geoms(file_, folder);
     MjcfBodies bodies(file_, geoms, refusals_, options_, robot_);
     bodies.read();
     add_medium(medium_, refusals_, bodies, robot_);
     if (robot_.links.size() < 2)
       xml_.fault(xml_.root(), "the model has no body", "Add <body> to <worldbody>.");
-    const MjcfControls controls = read_keyframe(file_, options_, activations_of(file_), robot_);
+    const MjcfControls controls = read_keyframe(file_, options_, activations(), robot_);
     MjcfTendons tendons(file_, refusals_, bodies, options_, robot_);
+    if (options_.actuators) add_actuator_armatures(file_, refusals_, tendons, robot_);
     tendons.read();
     for (const Element* e : file_.sections("equality")) read_equality(*e, bodies, tendons.sums());
     read_actuators(file_, refusals_, bodies, options_, controls, tendons, robot_);
     tendons.finish();
     read_sensors(file_, bodies, robot_);
     read_contacts(file_, bodies, options_, robot_);
+    for (const Element* section : file_.sections("asset"))
+      for (const Element* e = section->FirstChildElement(); e != nullptr;
+           e = e->NextSiblingElement()) {
+        static_cast<void>(xml_.children(*section, e->Name()));
+        file_.skip(*e);
+        const std::string_view tag = e->Name();
+        if (tag == "texture" || tag == "material" || tag == "skin" || tag == "hfield")
+          file_.ignored.add(*e, format("<{}> in <asset>", tag), "has no influence on the motion");
+      }
     for (const Element* e : file_.sections("deformable")) {
       xml_.skip(*e);
       refusals_.add(*e, "<deformable> is not read", "Leave it out.");
     }
-    file_.ignored.skip(xml_.root(),
-                       {"asset", "visual", "size", "statistic", "custom", "extension"});
+    file_.ignored.skip(xml_.root(), {"visual", "size", "statistic", "custom", "extension"});
     file_.ignored.add_unread();
     return std::move(robot_);
   }
 
  private:
-  void read_options() {
-    bool weightless = false;
-    for (const Element* e : file_.sections("option")) {
-      if (const auto g = xml_.vector(*e, "gravity")) robot_.gravity = *g;
-      if (const auto value = xml_.number(*e, "density")) medium_.density = *value;
-      if (const auto value = xml_.number(*e, "viscosity")) medium_.viscosity = *value;
-      if (const auto wind = xml_.vector(*e, "wind")) medium_.wind = !wind->isZero(0.0);
-      medium_.at = e;
-      if (const Element* flag = xml_.child(*e, "flag")) {
-        weightless = weightless || xml_.text(*flag, "gravity").value_or("") == "disable";
-        xml_.skip(*flag);
-      }
-      xml_.skip(*e);
-      file_.ignored.add(*e, "<option> other than gravity and medium", "belongs to another solver");
-    }
-    if (weightless) robot_.gravity.setZero();
+  /// Whether each actuator has a state of its own.
+  std::vector<bool> activations() {
+    std::vector<bool> list;
+    for (const MjcfActuator& a : actuators_of(file_)) list.push_back(a.has_activation());
+    return list;
   }
 
   const RobotJoint* single_joint(const Element& e, const std::string& name) {
@@ -92,8 +93,12 @@ class MjcfReader {
       const std::string name = tag.text("name", format("{}_{}", kind, 1 + robot_.loops.size()));
       file_.ignored.attributes(*e, {"solref", "solimp", "torquescale"});
       if (!tag.boolean("active", true)) {
-        xml_.skip(*e);
+        file_.skip(*e);
         file_.ignored.add(*e, "a constraint of <equality>", "is not active");
+      } else if (!file_.flags.equality) {
+        file_.skip(*e);
+        file_.ignored.add(*e, "a constraint of <equality> that <option> switches off",
+                          "holds nothing");
       } else if (kind == "joint") {
         read_joints(tag);
       } else if (kind == "tendon") {
@@ -112,9 +117,9 @@ class MjcfReader {
     const auto second = xml_.text(tag.e, "joint2");
     const RobotJoint* first = name.empty() ? nullptr : single_joint(tag.e, name);
     const RobotJoint* leader = second ? single_joint(tag.e, *second) : nullptr;
-    std::vector<double> c = tag.numbers("polycoef", 1, 5);
-    if (c.empty()) c = {0.0, 1.0};
-    c.resize(5, 0.0);
+    std::vector<double> c{0.0, 1.0, 0.0, 0.0, 0.0};
+    const std::vector<double> given = tag.numbers("polycoef", 1, 5);
+    std::copy(given.begin(), given.end(), c.begin());
     if (first == nullptr || (second && leader == nullptr)) return;
     if (c[2] != 0.0 || c[3] != 0.0 || c[4] != 0.0) {
       refusals_.add(tag.e, format("{} follows by a polynomial of a higher order", quote(name)),
@@ -232,7 +237,7 @@ class MjcfReader {
   }
 
   XmlFile& xml_;
-  const ImportOptions& options_;
+  ImportOptions& options_;
   MjcfFile file_;
   MjcfRefusals refusals_;
   Robot robot_;
@@ -256,9 +261,10 @@ Imported import_mjcf(std::shared_ptr<const SourceText> source, const ImportOptio
   const std::string own_folder = std::filesystem::path(options.file).parent_path().string();
   xml.include_files(own_folder);
   diagnostics.throw_if_any();
-  const Robot robot = MjcfReader(xml, options, result.notes).read(own_folder);
+  ImportOptions left = options;
+  const Robot robot = MjcfReader(xml, left, result.notes).read(own_folder);
   diagnostics.throw_if_any();
-  write_robot(robot, options, xml, diagnostics, folder, result);
+  write_robot(robot, left, xml, diagnostics, folder, result);
   diagnostics.throw_if_any();
   return result;
 }

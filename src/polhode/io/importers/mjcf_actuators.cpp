@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string_view>
+#include <map>
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -14,53 +13,40 @@ namespace polhode::io {
 
 namespace {
 
-const std::vector<std::string> kActuatorKinds{"general",  "motor",       "position", "velocity",
-                                              "damper",   "intvelocity", "cylinder", "muscle",
-                                              "adhesion", "plugin"};
-
-/// Whether an actuator has an activation, a state of its own.
-bool has_activation(const MjcfTag& tag) {
-  const std::string_view kind = tag.e.Name();
-  if (kind == "intvelocity" || kind == "muscle") return true;
-  if (kind == "cylinder") return tag.number("timeconst", 1.0) > 0.0;
-  if (kind == "position") return tag.number("timeconst", 0.0) > 0.0;
-  return kind == "general" && tag.text("dyntype", "none") != "none";
-}
-
 class ActuatorReader {
  public:
   ActuatorReader(MjcfFile& file, MjcfRefusals& refusals, const MjcfBodies& bodies,
                  MjcfTendons& tendons, Robot& robot)
-      : file_(file), refusals_(refusals), bodies_(bodies), tendons_(tendons), robot_(robot) {}
+      : file_(file), refusals_(refusals), bodies_(bodies), tendons_(tendons), robot_(robot) {
+    for (const MjcfActuator& a : actuators_of(file)) ++tendon_uses_[a.tendon];
+  }
 
   /// @param control, activation  Its own at the start.
-  void read(const MjcfTag& tag, double control, double activation) {
-    const std::string kind = tag.e.Name();
-    joint_ = tag.text("joint", tag.text("jointinparent", ""));
-    tendon_ = tag.text("tendon", "");
-    site_ = tag.text("site", "");
-    name_ = tag.text("name", (!joint_.empty()    ? joint_
-                              : !tendon_.empty() ? tendon_
-                                                 : site_) +
-                                 "_" + kind);
-    at_ = &tag.e;
+  void read(const MjcfActuator& a, double control, double activation) {
+    of_ = &a;
+    at_ = a.at;
+    name_ = a.name.empty() ? (!a.joint.empty()    ? a.joint
+                              : !a.tendon.empty() ? a.tendon
+                                                  : a.site) +
+                                 "_" + a.kind
+                           : a.name;
     law_ = {};
-    range_.clear();
-    if (kind == "muscle")
+    if (a.kind == "muscle")
       return refuse("is a muscle with curves of its own", "Add a cable with a 'muscle'.");
-    if (joint_.empty() && tendon_.empty() && site_.empty())
+    if (a.joint.empty() && a.tendon.empty() && a.site.empty())
       return refuse("does not act on a joint, tendon or site");
-    gears_ = tag.numbers("gear", 1, 6);
-    gears_.resize(6, 0.0);
-    if (!tag.has("gear")) gears_[0] = 1.0;
+    if (a.delay > 0.0) return refuse("has a delay", "Leave it out.");
     const bool bounded = file_.compiler.auto_limits;
-    if (const auto range = tag.numbers("ctrlrange", 2, 2);
-        !range.empty() && range[0] <= range[1] && tag.boolean("ctrllimited", bounded))
-      control = std::clamp(control, range[0], range[1]);
-    if (tag.boolean("forcelimited", bounded)) range_ = tag.numbers("forcerange", 2, 2);
+    std::vector<double> bounds = a.control.active(bounded),
+                        activations = a.activation.active(bounded);
+    if (a.inherited > 0.0 && !inherit(a.kind == "intvelocity" ? activations : bounds)) return;
+    if (bounds.size() == 2 && bounds[0] <= bounds[1] && file_.flags.control_bounds)
+      control = std::clamp(control, bounds[0], bounds[1]);
+    range_ = a.force.active(bounded);
     if (range_.size() == 2 && range_[0] > range_[1]) range_.clear();
-    if (!read_input(tag, kind, control, activation) || !read_law(tag, kind, control)) return;
-    act(tag);
+    if (!a.tendon.empty() && !bound_by_tendon()) return;
+    if (!read_input(control, activation, activations) || !read_law(control)) return;
+    act();
   }
 
   /// Bounds of joints on the effort of their actuators.
@@ -73,8 +59,10 @@ class ActuatorReader {
       if (own.size() == 1)
         own[0]->bound(*joint.least_effort, *joint.most_effort);
       else if (own.size() > 1)
-        file_.ignored.add(*joint.at, "'actuatorfrcrange' of a joint with several actuators",
-                          "limits nothing");
+        refusals_.add(*joint.at,
+                      format("the 'actuatorfrcrange' of {} bounds the sum of several actuators",
+                             quote(joint.name)),
+                      "Give each a 'forcerange'.");
     }
   }
 
@@ -90,40 +78,62 @@ class ActuatorReader {
     refusals_.add(*at_, format("the actuator {} {}", quote(name_), what), hint);
   }
 
+  /// Bounds as a part of the range of the actuator's joint, about the same middle.
+  bool inherit(std::vector<double>& bounds) {
+    for (const RobotJoint& joint : robot_.joints)
+      if (joint.name == of_->joint && joint.is_single() && joint.lower && joint.upper) {
+        const double middle = 0.5 * (*joint.lower + *joint.upper);
+        const double radius = 0.5 * of_->inherited * (*joint.upper - *joint.lower);
+        bounds = {middle - radius, middle + radius};
+        return true;
+      }
+    refuse("inherits its range from something that is no joint with a range",
+           "Give 'ctrlrange' or 'actrange'.");
+    return false;
+  }
+
+  /// Bounds of the tendon on the force of its only actuator.
+  bool bound_by_tendon() {
+    const std::vector<double> bounds = tendons_.force_range(of_->tendon);
+    if (bounds.empty()) return true;
+    if (tendon_uses_[of_->tendon] > 1) {
+      refuse(format("is one of several on the tendon {}, which bounds their sum by "
+                    "'actuatorfrcrange'",
+                    quote(of_->tendon)),
+             "Give each a 'forcerange'.");
+      return false;
+    }
+    if (range_.empty())
+      range_ = bounds;
+    else
+      range_ = {std::clamp(range_[0], bounds[0], bounds[1]),
+                std::clamp(range_[1], bounds[0], bounds[1])};
+    return true;
+  }
+
   /// The input of the gain: the control, or an activation that follows it.
-  bool read_input(const MjcfTag& tag, const std::string& kind, double control, double activation) {
+  bool read_input(double control, double activation, const std::vector<double>& bounds) {
     input_ = {};
     input_.constant = control;
-    if (!has_activation(tag)) return true;
-    const std::string type = kind == "intvelocity" ? "integrator"
-                             : kind == "general"   ? tag.text("dyntype", "none")
-                                                   : "filter";
-    if (type == "integrator") {
+    if (!of_->has_activation()) return true;
+    if (of_->dynamics == "integrator") {
       input_.constant = activation;
       input_.ramp = control;
-    } else if (type == "filter" || type == "filterexact") {
-      const std::vector<double> given = tag.numbers("dynprm", 1, 10);
-      const double time = kind == "cylinder"   ? tag.number("timeconst", 1.0)
-                          : kind == "position" ? tag.number("timeconst", 0.0)
-                          : given.empty()      ? 1.0
-                                               : given[0];
-      if (!(time > 0.0)) {
-        file_.xml.fault(tag.e, format("the time constant of {} is {}", quote(name_), time),
+    } else if (of_->dynamics == "filter" || of_->dynamics == "filterexact") {
+      if (!(of_->time > 0.0)) {
+        file_.xml.fault(*at_, format("the time constant of {} is {}", quote(name_), of_->time),
                         "Give one above 0.");
         return false;
       }
       input_.decay = activation - control;
-      input_.time = time;
+      input_.time = of_->time;
     } else {
-      refuse(format("has the dynamics {}", quote(type)));
+      refuse(format("has the dynamics {}", quote(of_->dynamics)));
       return false;
     }
-    const std::vector<double> range = tag.numbers("actrange", 2, 2);
-    if (range.size() == 2 && range[0] < range[1] &&
-        tag.boolean("actlimited", file_.compiler.auto_limits))
-      input_ = input_.within(range[0], range[1]);
+    if (bounds.size() == 2 && bounds[0] < bounds[1]) input_ = input_.within(bounds[0], bounds[1]);
     if (!said_) {
-      file_.notes.push_back({ImportNote::Kind::approximated, file_.xml.place(tag.e),
+      file_.notes.push_back({ImportNote::Kind::approximated, file_.xml.place(*at_),
                              "activations of actuators are functions of time, as their controls "
                              "are constant"});
       said_ = true;
@@ -131,51 +141,29 @@ class ActuatorReader {
     return true;
   }
 
-  bool read_law(const MjcfTag& tag, const std::string& kind, double control) {
+  bool read_law(double control) {
     const auto no = [&](const std::string& what) {
       refuse(what);
       return false;
     };
-    const auto prm = [&](const char* attribute, std::vector<double> standard) {
-      const std::vector<double> given = tag.numbers(attribute, 1, 10);
-      if (!given.empty()) standard = given;
-      standard.resize(std::max<std::size_t>(3, standard.size()), 0.0);
-      return standard;
-    };
-    std::vector<double> gain{1.0, 0.0, 0.0}, bias{0.0, 0.0, 0.0};
-    if (kind == "position" || kind == "intvelocity") {
-      gain[0] = tag.number("kp", 1.0);
-      bias[1] = -gain[0];
-      bias[2] = -tag.number("kv", 0.0);
-      law_.ratio = tag.number("dampratio", 0.0);
-    } else if (kind == "velocity") {
-      gain[0] = tag.number("kv", 1.0);
-      bias[2] = -gain[0];
-    } else if (kind == "damper") {
-      gain = {0.0, 0.0, -tag.number("kv", 1.0)};
-    } else if (kind == "cylinder") {
-      gain[0] = tag.number("area", 1.0);
-      if (tag.has("diameter"))
-        gain[0] = std::numbers::pi / 4.0 * std::pow(tag.number("diameter", 0.0), 2);
-      bias = prm("bias", bias);
-    } else if (kind == "general") {
-      const std::string of_gain = tag.text("gaintype", "fixed"),
-                        of_bias = tag.text("biastype", "none");
-      if ((of_gain != "fixed" && of_gain != "affine") || (of_bias != "none" && of_bias != "affine"))
-        return no("has a gain or bias that is not affine");
-      gain = prm("gainprm", gain);
-      if (of_gain == "fixed") gain[1] = gain[2] = 0.0;
-      if (of_bias == "affine") bias = prm("biasprm", bias);
-    } else if (kind != "motor") {
-      return no(format("is a {}", kind));
-    }
+    static const std::vector<std::string> read{"general", "motor",       "position", "velocity",
+                                               "damper",  "intvelocity", "cylinder"};
+    if (std::find(read.begin(), read.end(), of_->kind) == read.end())
+      return no(format("is a {}", of_->kind));
+    if ((of_->gain_type != "fixed" && of_->gain_type != "affine") ||
+        (of_->bias_type != "none" && of_->bias_type != "affine"))
+      return no("has a gain or bias that is not affine");
+    std::vector<double> gain = of_->gain, bias = of_->bias;
+    if (of_->gain_type == "fixed") gain[1] = gain[2] = 0.0;
+    if (of_->bias_type == "none") bias.assign(3, 0.0);
     if ((gain[1] != 0.0 || gain[2] != 0.0) && !input_.is_constant())
       return no("has a gain that depends on its length, and dynamics of its own");
     law_.signal = input_.times(gain[0]).plus(bias[0]);
     law_.stiffness = -bias[1] - gain[1] * control;
     law_.damping = -bias[2] - gain[2] * control;
     // A positive entry is the damping ratio of a position servo.
-    if (kind == "general" && law_.damping < 0.0 && law_.stiffness == gain[0] && gain[0] > 0.0) {
+    if (law_.damping < 0.0 && gain[1] == 0.0 && gain[2] == 0.0 && law_.stiffness == gain[0] &&
+        gain[0] > 0.0) {
       law_.ratio = -law_.damping;
       law_.damping = 0.0;
     }
@@ -184,47 +172,48 @@ class ActuatorReader {
     return true;
   }
 
-  void act(const MjcfTag& tag) {
-    if (!site_.empty()) return act_on_site(tag);
-    if (!joint_.empty()) {
-      if (single_joint(file_.xml, robot_, tag.e, joint_) != nullptr)
-        add(tag, name_, joint_, gears_[0]);
+  void act() {
+    if (!of_->site.empty()) return act_on_site();
+    if (!of_->joint.empty()) {
+      if (single_joint(file_.xml, robot_, *at_, of_->joint) != nullptr)
+        add(name_, of_->joint, of_->gear[0]);
       return;
     }
-    const auto sum = tendons_.sums().find(tendon_);
+    const auto sum = tendons_.sums().find(of_->tendon);
     if (sum != tendons_.sums().end()) {
       std::vector<std::pair<std::string, double>> joints = sum->second;
       std::erase_if(joints, [](const auto& j) { return j.second == 0.0; });
       if ((law_.is_servo() || law_.ratio > 0.0) && joints.size() > 1)
-        return add(tag, name_, tendons_.length_joint(tendon_), gears_[0]);
+        return add(name_, tendons_.length_joint(of_->tendon), of_->gear[0]);
       for (const auto& [joint, factor] : joints)
-        add(tag, joints.size() > 1 ? name_ + "_" + joint : name_, joint, gears_[0] * factor);
-    } else if (tendons_.spatial(tendon_) != nullptr) {
-      pull(tag, *tendons_.spatial(tendon_));
+        add(joints.size() > 1 ? name_ + "_" + joint : name_, joint, of_->gear[0] * factor);
+    } else if (tendons_.spatial(of_->tendon) != nullptr) {
+      pull(*tendons_.spatial(of_->tendon));
     } else {
-      file_.xml.fault(tag.e, format("there is no tendon {}", quote(tendon_)),
+      file_.xml.fault(*at_, format("there is no tendon {}", quote(of_->tendon)),
                       "Name one of <tendon>.");
     }
   }
 
   /// The force along a line through sites: a tension, and for a servo a spring of the same path.
-  void pull(const MjcfTag& tag, RobotCable& cable) {
-    const double gear = gears_[0];
+  void pull(RobotCable& cable) {
+    const double gear = of_->gear[0];
     if (law_.ratio > 0.0)
-      return refuse(format("has a damping ratio along the tendon {}", quote(tendon_)),
+      return refuse(format("has a damping ratio along the tendon {}", quote(of_->tendon)),
                     "Give 'kv'.");
     if (!law_.is_servo()) {
       cable.tension.push_back(limited(law_.signal).times(-gear));
-      file_.notes.push_back(
-          {ImportNote::Kind::approximated, file_.xml.place(tag.e),
-           format("the actuator {} is the pull of the tendon {}", quote(name_), quote(tendon_))});
+      file_.notes.push_back({ImportNote::Kind::approximated, file_.xml.place(*at_),
+                             format("the actuator {} is the pull of the tendon {}", quote(name_),
+                                    quote(of_->tendon))});
       return;
     }
     if (!range_.empty())
-      return refuse(format("is a servo of the length of {} with a 'forcerange'", quote(tendon_)),
-                    "Leave the 'forcerange' out, or give the cable a 'tension' with a controller.");
+      return refuse(
+          format("is a servo of the length of {} with a 'forcerange'", quote(of_->tendon)),
+          "Leave the 'forcerange' out, or give the cable a 'tension' with a controller.");
     RobotCable spring;
-    spring.at = &tag.e;
+    spring.at = at_;
     spring.name = name_;
     spring.through = cable.through;
     spring.around = cable.around;
@@ -244,22 +233,21 @@ class ActuatorReader {
   }
 
   /// A force and a moment along the axes of a site, or of a site of the world.
-  void act_on_site(const MjcfTag& tag) {
+  void act_on_site() {
     const auto find = [&](const std::string& name) {
       const auto site = bodies_.sites().find(name);
       if (site == bodies_.sites().end())
-        file_.xml.fault(tag.e, format("there is no site {}", quote(name)),
-                        "Name a site of a body.");
+        file_.xml.fault(*at_, format("there is no site {}", quote(name)), "Name a site of a body.");
       return site;
     };
-    const std::string reference = tag.text("refsite", "");
-    const auto site = find(site_);
+    const std::string& reference = of_->reference;
+    const auto site = find(of_->site);
     if (site == bodies_.sites().end()) return;
     // The length along a single site is always zero, so that a stiffness has no effect.
     if (law_.damping != 0.0 || law_.ratio > 0.0 || (law_.stiffness != 0.0 && !reference.empty()))
       return refuse("is a servo of a site", "Use a motor, or add a bushing.");
     RobotPush push;
-    push.at = &tag.e;
+    push.at = at_;
     push.name = name_;
     push.point = {site->second.link, site->second.frame.p};
     push.signal = limited(law_.signal);
@@ -268,14 +256,14 @@ class ActuatorReader {
       const auto other = find(reference);
       if (other == bodies_.sites().end()) return;
       if (!is_still(other->second.link))
-        return refuse(format("acts between the sites {} and {}, which both may move", quote(site_),
-                             quote(reference)),
+        return refuse(format("acts between the sites {} and {}, which both may move",
+                             quote(of_->site), quote(reference)),
                       "Let 'refsite' be on the world, or leave it out.");
       push.in_world = true;
       axes = bodies_.frames().at(other->second.link).R * other->second.frame.R;
     }
-    push.force = axes * Vec3(gears_[0], gears_[1], gears_[2]);
-    push.moment = axes * Vec3(gears_[3], gears_[4], gears_[5]);
+    push.force = axes * Vec3(of_->gear[0], of_->gear[1], of_->gear[2]);
+    push.moment = axes * Vec3(of_->gear[3], of_->gear[4], of_->gear[5]);
     robot_.pushes.push_back(std::move(push));
   }
 
@@ -290,9 +278,9 @@ class ActuatorReader {
     return range_.empty() ? force : force.within(range_[0], range_[1]);
   }
 
-  void add(const MjcfTag& tag, const std::string& name, const std::string& joint, double gear) {
+  void add(const std::string& name, const std::string& joint, double gear) {
     RobotActuator actuator;
-    actuator.at = &tag.e;
+    actuator.at = at_;
     actuator.joint = joint;
     actuator.name = name == joint ? name + "_motor" : name;
     const double squared = gear * gear;
@@ -311,7 +299,7 @@ class ActuatorReader {
       // The force of the activation beside that of spring and damper about zero.
       actuator.kind = RobotActuator::Kind::place;
       RobotActuator more;
-      more.at = &tag.e;
+      more.at = at_;
       more.joint = joint;
       more.name = actuator.name + "_activation";
       more.target = effort;
@@ -347,9 +335,9 @@ class ActuatorReader {
   bool put_ratio(const std::string& joint, double gear, RobotActuator& actuator) {
     const MjcfInertia& inertia = tendons_.inertia();
     double J = 0.0;
-    const auto sum = tendons_.sums().find(tendon_);
+    const auto sum = tendons_.sums().find(of_->tendon);
     if (sum != tendons_.sums().end() && sum->second.size() > 1)
-      J = tendons_.inertia_of(tendon_);
+      J = tendons_.inertia_of(of_->tendon);
     else
       for (std::size_t j = 0; inertia.is_there() && j < robot_.joints.size(); ++j)
         if (robot_.joints[j].name == joint) J = inertia.effective(j);
@@ -369,11 +357,12 @@ class ActuatorReader {
   MjcfTendons& tendons_;
   Robot& robot_;
   bool said_ = false;
+  std::map<std::string, int> tendon_uses_;  ///< Actuators of each tendon.
 
   // The actuator that is read.
   const XmlFile::Element* at_ = nullptr;
-  std::string name_, joint_, tendon_, site_;
-  std::vector<double> gears_;
+  const MjcfActuator* of_ = nullptr;
+  std::string name_;
   RobotSignal input_;
   Law law_;
   std::vector<double> range_;  ///< Of the force; empty: without bounds.
@@ -381,37 +370,49 @@ class ActuatorReader {
 
 }  // namespace
 
-std::vector<bool> activations_of(MjcfFile& file) {
-  std::vector<bool> list;
-  for (const XmlFile::Element* e : actuators_of(file))
-    list.push_back(has_activation({file, *e, kActuatorKinds, ""}));
-  return list;
-}
-
-std::vector<const XmlFile::Element*> actuators_of(MjcfFile& file) {
-  std::vector<const XmlFile::Element*> list;
-  for (const XmlFile::Element* section : file.sections("actuator"))
-    for (const XmlFile::Element* e = section->FirstChildElement(); e != nullptr;
-         e = e->NextSiblingElement()) {
-      static_cast<void>(file.xml.children(*section, e->Name()));
-      list.push_back(e);
+void add_actuator_armatures(MjcfFile& file, MjcfRefusals& refusals, MjcfTendons& tendons,
+                            Robot& robot) {
+  for (const MjcfActuator& a : actuators_of(file)) {
+    const double damping = file.flags.dampers ? a.damping : 0.0;
+    if (file.flags.dampers && a.damping_is_polynomial)
+      refusals.add(*a.at, format("'damping' of <{}> is a polynomial", a.kind), "Give one number.");
+    if (damping < 0.0 || a.armature < 0.0)
+      file.xml.fault(*a.at, format("<{}> has a negative damping or armature", a.kind),
+                     "Give a value that is not negative.");
+    if (damping == 0.0 && a.armature == 0.0) continue;
+    const double squared = a.gear[0] * a.gear[0];
+    if (!a.tendon.empty()) {
+      tendons.add_of_actuator(a.tendon, squared * damping, squared * a.armature);
+      continue;
     }
-  return list;
+    const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(),
+                                    [&](const RobotJoint& j) { return j.name == a.joint; });
+    if (joint == robot.joints.end() || !joint->is_single()) {
+      refusals.add(*a.at, format("<{}> has a damping or armature without a hinge or slide", a.kind),
+                   "Give it to the joint.");
+      continue;
+    }
+    joint->damping += squared * damping;
+    joint->armature += squared * a.armature;
+  }
 }
 
 void read_actuators(MjcfFile& file, MjcfRefusals& refusals, const MjcfBodies& bodies,
                     const ImportOptions& options, const MjcfControls& controls,
                     MjcfTendons& tendons, Robot& robot) {
-  const auto list = actuators_of(file);
+  const std::vector<MjcfActuator> list = actuators_of(file);
   const auto at = [](const std::vector<double>& values, std::size_t k) {
     return k < values.size() ? values[k] : 0.0;
   };
+  const std::vector<double>& off = file.flags.actuator_groups_off;
   ActuatorReader reader(file, refusals, bodies, tendons, robot);
   for (std::size_t k = 0; k < list.size(); ++k) {
-    if (options.actuators)
-      reader.read({file, *list[k], kActuatorKinds, ""}, at(controls.controls, k),
-                  at(controls.activations, k));
-    file.xml.skip(*list[k]);
+    const MjcfActuator& a = list[k];
+    if (!file.flags.actuation || std::find(off.begin(), off.end(), a.group) != off.end())
+      file.ignored.add(*a.at, "an actuator that <option> switches off", "exerts no force");
+    else if (options.actuators)
+      reader.read(a, at(controls.controls, k), at(controls.activations, k));
+    file.skip(*a.at);
   }
   reader.finish();
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <polhode/io/importers/mjcf_actuator_values.hpp>
 #include <polhode/io/importers/mjcf_keyframe.hpp>
 #include <polhode/io/importers/mjcf_tendons.hpp>
 
@@ -14,9 +15,9 @@ void read_actuators(MjcfFile& file, MjcfRefusals& refusals, const MjcfBodies& bo
                     const ImportOptions& options, const MjcfControls& controls,
                     MjcfTendons& tendons, Robot& robot);
 
-/// All actuators of a file.
-[[nodiscard]] std::vector<const XmlFile::Element*> actuators_of(MjcfFile& file);
-/// Whether each of them has an activation, a state of its own.
-[[nodiscard]] std::vector<bool> activations_of(MjcfFile& file);
+/// Adds the armatures and dampings of actuators to their joints and tendons, on which they act also
+/// where the actuators are switched off. To be called before anything depends on inertias.
+void add_actuator_armatures(MjcfFile& file, MjcfRefusals& refusals, MjcfTendons& tendons,
+                            Robot& robot);
 
 }  // namespace polhode::io

@@ -73,8 +73,8 @@ void MjcfBodies::tune() {
           "Give stiffness and damping.");
       continue;
     }
-    joint.stiffness = J / (t.time * t.time * t.ratio * t.ratio);
-    joint.damping = 2.0 * J / t.time;
+    if (file_.flags.springs) joint.stiffness = J / (t.time * t.time * t.ratio * t.ratio);
+    if (file_.flags.dampers) joint.damping = 2.0 * J / t.time;
   }
 }
 
@@ -112,7 +112,7 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
       if (const auto ends = tag.numbers("fromto", 6, 6); !ends.empty())
         frame.p = 0.5 * Vec3(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
       if (const auto site = tag.name()) sites_[*site] = {place.link, place.frame * frame};
-      xml.skip(*inner);
+      file_.skip(*inner);
     } else if (name == "frame") {
       static_cast<void>(xml.children(e, "frame"));
       const MjcfTag tag{file_, *inner, {}, ""};
@@ -266,6 +266,9 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
   robot_.links[static_cast<std::size_t>(body)].mass = mass;
   robot_.links[static_cast<std::size_t>(body)].has_inertial = mass.mass > 0.0;
   robot_.links[static_cast<std::size_t>(body)].carried = xml.number(e, "gravcomp").value_or(0.0);
+  // Without springs and dampers MuJoCo leaves all passive forces out.
+  if (!file_.flags.springs && !file_.flags.dampers)
+    robot_.links[static_cast<std::size_t>(body)].carried = 0.0;
 }
 
 void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
@@ -308,8 +311,12 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
                       "Give a value that is not negative.");
     return list[0];
   };
-  joint.damping = effort("damping");
-  joint.stiffness = effort("stiffness");
+  if (file_.flags.dampers) joint.damping = effort("damping");
+  if (file_.flags.springs) joint.stiffness = effort("stiffness");
+  file_.ignored.attributes(tag.e, {"damping", "stiffness"});
+  if (tag.has("springyield"))
+    refusals_.add(tag.e, format("the spring of {} yields", quote(joint.name)),
+                  "Leave 'springyield' out.");
   joint.friction = effort("frictionloss");
   joint.armature = effort("armature");
   if (joint.type == "floating") {
@@ -358,7 +365,7 @@ void MjcfBodies::read_limits(const MjcfTag& tag, RobotJoint& joint) {
   if (low < high) {
     joint.lower = low;
     joint.upper = high;
-  } else {
+  } else if (low != 0.0 || high != 0.0 || tag.has("limited")) {  // "0 0" is no range.
     file_.xml.fault(tag.e,
                     format("the joint {} has the limits {} to {}", quote(joint.name), low, high),
                     "Give a lower limit below the upper one.");

@@ -145,15 +145,23 @@ class MjcfContactReader {
 void read_contacts(MjcfFile& file, const MjcfBodies& bodies, const ImportOptions& options,
                    Robot& robot) {
   robot.contacts.wanted = options.contacts;
+  robot.contacts.off = !file.flags.contact;
+  const auto say = [&](bool is, const char* what) {
+    if (is && options.contacts)
+      file.notes.push_back({ImportNote::Kind::approximated, file.xml.place(file.xml.root()), what});
+  };
+  say(!file.flags.contact, "<option> switches contacts off, and those of the model act");
+  say(!file.flags.parents_do_not_touch,
+      "bodies do not touch their parents, also where <option> lets them");
   MjcfContactReader reader(file, bodies, robot);
   for (const XmlFile::Element* section : file.sections("contact")) {
     for (const XmlFile::Element* e : file.xml.children(*section, "exclude")) {
       if (options.contacts) reader.read_exclusion(*e);
-      file.xml.skip(*e);
+      file.skip(*e);
     }
     for (const XmlFile::Element* e : file.xml.children(*section, "pair")) {
       if (options.contacts) reader.read_pair({file, *e, {"pair"}, ""});
-      file.xml.skip(*e);
+      file.skip(*e);
     }
     if (!options.contacts)
       file.ignored.add(*section, "<contact>", "acts where the model has 'contacts'");

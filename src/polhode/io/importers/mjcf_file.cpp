@@ -47,7 +47,11 @@ std::vector<const Element*> MjcfFile::sections(const char* name) {
 
 void MjcfFile::read_compiler(const Element& e) {
   MjcfCompiler& c = compiler;
-  if (const auto unit = xml.text(e, "angle")) c.degrees = *unit != "radian";
+  if (const auto unit = xml.text(e, "angle")) {
+    c.degrees = *unit != "radian";
+    if (*unit != "radian" && *unit != "degree")
+      xml.fault(e, format("'angle' of <compiler> is {}", quote(*unit)), "Write radian or degree.");
+  }
   if (const auto order = xml.text(e, "eulerseq")) {
     c.euler = *order;
     if (order->size() != 3 || order->find_first_not_of("xyzXYZ") != std::string::npos) {
@@ -62,10 +66,14 @@ void MjcfFile::read_compiler(const Element& e) {
   for (const char* folder : {"assetdir", "meshdir"})
     if (const auto path = xml.text(e, folder)) c.mesh_folder = *path;
   c.strip_path = is_true(xml, e, "strippath", c.strip_path);
-  if (const auto how = xml.text(e, "inertiafromgeom"))
+  if (const auto how = xml.text(e, "inertiafromgeom")) {
+    if (*how != "true" && *how != "false" && *how != "auto")
+      xml.fault(e, format("'inertiafromgeom' of <compiler> is {}", quote(*how)),
+                "Write true, false or auto.");
     c.inertia = *how == "true"    ? MjcfCompiler::FromGeoms::always
                 : *how == "false" ? MjcfCompiler::FromGeoms::never
                                   : MjcfCompiler::FromGeoms::automatic;
+  }
   c.least_mass = xml.number(e, "boundmass").value_or(c.least_mass);
   c.least_inertia = xml.number(e, "boundinertia").value_or(c.least_inertia);
   c.total_mass = xml.number(e, "settotalmass").value_or(c.total_mass);
@@ -91,34 +99,55 @@ void MjcfFile::read_defaults(const Element& e, const std::string& parent) {
   // Attributes of defaults are read where they are used.
   for (const Element* kind = e.FirstChildElement(); kind != nullptr;
        kind = kind->NextSiblingElement())
-    if (std::string_view(kind->Name()) != "default") xml.skip(*kind);
+    if (std::string_view(kind->Name()) != "default") {
+      static_cast<void>(xml.children(e, kind->Name()));
+      skip(*kind);
+    }
 }
 
-const Element* MjcfFile::giver(const Element& e, const char* attribute,
-                               const std::vector<std::string>& kinds,
-                               const std::string& child_class) {
+std::vector<const Element*> MjcfFile::blocks_of(const Element& e, const std::string& child_class) {
+  std::vector<const Element*> blocks;
   const auto own = xml.text(e, "class");
-  if (e.Attribute(attribute) != nullptr) return &e;
   std::string name = own ? *own : child_class.empty() ? main_ : child_class;
   while (!name.empty()) {
     const auto found = classes_.find(name);
     if (found == classes_.end()) {
-      if (name == "main") return nullptr;  // No defaults at all.
+      if (name == "main") break;  // No defaults at all.
       std::vector<std::string> names;
       for (const auto& c : classes_) names.push_back(c.first);
       xml.fault(e, format("there is no class {}", quote(name)),
                 did_you_mean(name, names) + "Classes: " + name_list(names, 12) + ".");
       classes_[name];  // One message for each.
-      return nullptr;
+      break;
     }
-    for (auto block = found->second.blocks.rbegin(); block != found->second.blocks.rend(); ++block)
-      for (const std::string& kind : kinds)
-        for (const Element* d = (*block)->FirstChildElement(kind.c_str()); d != nullptr;
-             d = d->NextSiblingElement(kind.c_str()))
-          if (d->Attribute(attribute) != nullptr) return d;
+    blocks.insert(blocks.end(), found->second.blocks.rbegin(), found->second.blocks.rend());
     name = found->second.parent;
   }
-  return nullptr;
+  return blocks;
+}
+
+std::vector<const Element*> MjcfFile::givers(const Element& e, const char* attribute,
+                                             const std::vector<std::string>& kinds,
+                                             const std::string& child_class) {
+  std::vector<const Element*> list;
+  if (e.Attribute(attribute) != nullptr) list.push_back(&e);
+  for (const Element* block : blocks_of(e, child_class))
+    for (const std::string& kind : kinds)
+      for (const Element* d = block->LastChildElement(kind.c_str()); d != nullptr;
+           d = d->PreviousSiblingElement(kind.c_str()))
+        if (d->Attribute(attribute) != nullptr) list.push_back(d);
+  return list;
+}
+
+const Element* MjcfFile::giver(const Element& e, const char* attribute,
+                               const std::vector<std::string>& kinds,
+                               const std::string& child_class) {
+  if (e.Attribute(attribute) != nullptr) {
+    static_cast<void>(xml.text(e, "class"));
+    return &e;
+  }
+  const std::vector<const Element*> list = givers(e, attribute, kinds, child_class);
+  return list.empty() ? nullptr : list.front();
 }
 
 std::optional<std::string> MjcfTag::name() const {
@@ -148,10 +177,14 @@ Vec3 MjcfTag::vector(const char* attribute, const Vec3& standard) const {
 
 std::vector<double> MjcfTag::numbers(const char* attribute, std::size_t least,
                                      std::size_t most) const {
-  const Element* giver = file.giver(e, attribute, kinds, child_class);
-  if (giver == nullptr) return {};
-  return file.xml.numbers(*giver, attribute, least, std::min(most, kAny))
-      .value_or(std::vector<double>());
+  std::vector<double> all;
+  for (const Element* giver : file.givers(e, attribute, kinds, child_class)) {
+    const auto given = file.xml.numbers(*giver, attribute, least, std::min(most, kAny));
+    if (!given) break;
+    for (std::size_t k = all.size(); k < given->size(); ++k) all.push_back((*given)[k]);
+    if (all.size() >= most) break;
+  }
+  return all;
 }
 
 bool MjcfTag::boolean(const char* attribute, bool standard) const {

@@ -27,6 +27,13 @@ struct MjcfCompiler {
   double groups[2] = {0.0, 5.0};  ///< Of geoms that have mass.
 };
 
+/// Parts of the physics that <flag> of <option> can switch off.
+struct MjcfFlags {
+  bool springs = true, dampers = true, equality = true, actuation = true, control_bounds = true;
+  bool contact = true, parents_do_not_touch = true;
+  std::vector<double> actuator_groups_off;
+};
+
 /// An MJCF file: a tree of tags whose attributes have defaults by class.
 class MjcfFile {
  public:
@@ -40,11 +47,22 @@ class MjcfFile {
   std::vector<ImportNote>& notes;
   IgnoredTags ignored;
   MjcfCompiler compiler;
+  MjcfFlags flags;
 
   /// Radians of an angle in the file's unit.
   [[nodiscard]] double angle(double value) const;
   /// All tags of a name in all sections of a name.
   std::vector<const Element*> sections(const char* name);
+  /// Blocks of defaults that apply to a tag: those of its class, then of the classes above it; in
+  /// each class the last one first.
+  std::vector<const Element*> blocks_of(const Element& e, const std::string& child_class);
+  /// Marks a tag with all it contains as read, and lists those of its attributes and tags that MJCF
+  /// does not have.
+  void skip(const Element& e);
+  /// Tags that give an attribute: the tag itself, and the defaults of its class and of those above.
+  std::vector<const Element*> givers(const Element& e, const char* attribute,
+                                     const std::vector<std::string>& kinds,
+                                     const std::string& child_class);
   /// Tag that gives an attribute: the tag itself, or the default of its class or a class above.
   /// @param kinds  Names of its tag in defaults.
   /// @returns null if there is none.
@@ -77,7 +95,8 @@ struct MjcfTag {
   [[nodiscard]] std::string text(const char* attribute, const std::string& standard = "") const;
   [[nodiscard]] double number(const char* attribute, double standard) const;
   [[nodiscard]] Vec3 vector(const char* attribute, const Vec3& standard) const;
-  /// Empty if it is missing, or after an error.
+  /// Empty if it is missing, or after an error. Where there are fewer than `most`, the others are
+  /// those of defaults further above: each tag replaces only the numbers that it gives.
   [[nodiscard]] std::vector<double> numbers(const char* attribute, std::size_t least,
                                             std::size_t most) const;
   [[nodiscard]] bool boolean(const char* attribute, bool standard) const;

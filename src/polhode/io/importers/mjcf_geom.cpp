@@ -86,7 +86,18 @@ MjcfGeoms::MjcfGeoms(MjcfFile& file, const std::string& folder)
       if (name.empty()) name = fs::path(path).stem().string();
       if (file_.compiler.strip_path) path = fs::path(path).filename().string();
       if (!path.empty()) path = (fs::path(file_.compiler.mesh_folder) / path).string();
-      meshes_[name] = {e, path, tag.vector("scale", Vec3::Ones()), tag.text("inertia", "legacy")};
+      meshes_[name] = {
+          e, path, tag.vector("scale", Vec3::Ones()), tag.text("inertia", "legacy"), {}};
+      Pose& reference = meshes_[name].reference;
+      reference.p = tag.vector("refpos", Vec3::Zero());
+      if (const auto q = tag.numbers("refquat", 4, 4); !q.empty()) {
+        const Quat turn(q[0], q[1], q[2], q[3]);
+        if (turn.norm() > 0.0)
+          reference.R = turn.normalized().toRotationMatrix();
+        else
+          file_.xml.fault(*e, "'refquat' of <mesh> has no length",
+                          "Give numbers that are not all zero.");
+      }
       file_.ignored.attributes(*e, {"class", "maxhullvert", "smoothnormal", "content_type"});
     }
 }
@@ -105,7 +116,8 @@ std::set<std::string> MjcfGeoms::names_in_pairs() {
 MassProperties MjcfGeoms::mass_of_mesh(const Mesh& mesh) {
   geometry::TriangleSurface surface =
       geometry::read_surface((fs::path(folder_) / mesh.file).string());
-  for (Vec3& x : surface.points) x = x.cwiseProduct(mesh.scale);
+  const Pose to_mesh = mesh.reference.inverse();
+  for (Vec3& x : surface.points) x = (to_mesh * x).cwiseProduct(mesh.scale);
   if (mesh.inertia == "exact") {
     geometry::check_closed(mesh.file, surface);
     return geometry::mass_properties(surface, 1.0);
@@ -173,9 +185,17 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
     }
     const bool fits = type != "mesh";
     const bool plain = !fits && !found->second.file.empty();
-    if (plain) {
-      shape.file = found->second.file;
-      shape.scale = found->second.scale;
+    const Mesh& mesh = found->second;
+    const bool even = mesh.scale == Vec3::Constant(mesh.scale[0]);
+    const Pose in_geom = shape.pose;
+    if (plain && !even && !mesh.reference.R.isIdentity(0.0)) {
+      file_.ignored.add(e, "a <mesh> with 'refquat' and a scale that differs by direction",
+                        "is no shape: only its mass is read");
+    } else if (plain) {
+      shape.file = mesh.file;
+      shape.scale = mesh.scale;
+      const Pose to_mesh = mesh.reference.inverse();
+      shape.pose = in_geom * Pose{to_mesh.p.cwiseProduct(mesh.scale), to_mesh.R};
       geom.shape = shape;
     } else {
       file_.ignored.add(e, fits ? "the fit of a <geom> to a mesh" : "a <mesh> without a file",
@@ -184,12 +204,12 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
     if (!massive || tag.number("mass", 1.0) == 0.0 || density(1.0) == 0.0) return geom;
     try {
       if (!plain) throw InputError("mesh", "is not read from a file", "");
-      MassProperties unit = mass_of_mesh(found->second);
+      MassProperties unit = mass_of_mesh(mesh);
       const double rho = density(unit.mass);
       unit.mass *= rho;
       unit.inertia *= rho;
-      geom.axes = shape.pose.R * rotated_to_principal(unit.inertia / unit.mass);
-      geom.mass = geometry::placed(unit, shape.pose.p, shape.pose.R);
+      geom.axes = in_geom.R * rotated_to_principal(unit.inertia / unit.mass);
+      geom.mass = geometry::placed(unit, in_geom.p, in_geom.R);
     } catch (const InputError& error) {
       xml.fault(e,
                 format("the mass of the mesh {} is not known: {}", quote(mesh_name),

@@ -39,6 +39,7 @@ class MjcfGeoms {
     std::string file;
     Vec3 scale;
     std::string inertia;  ///< How its mass properties are found.
+    Pose reference;       ///< Frame of the mesh in the file's coordinates, before the scale.
   };
   [[nodiscard]] std::set<std::string> names_in_pairs();
   [[nodiscard]] geometry::MassProperties mass_of_mesh(const Mesh& mesh);

@@ -85,6 +85,12 @@ class SensorReader {
   }
 
  private:
+  /// A frame on a link.
+  struct Frame {
+    std::string link;
+    Pose pose;
+  };
+
   /// The joint between a body and its parent, by a site of the body.
   bool find_joint(const XmlFile::Element& e, RobotProbe& probe) {
     const auto site = find_site(e, probe.of);
@@ -94,21 +100,26 @@ class SensorReader {
     return true;
   }
 
-  std::optional<RobotPoint> find_site(const XmlFile::Element& e, const std::string& name) {
+  std::optional<Frame> find_site(const XmlFile::Element& e, const std::string& name) {
     const auto site = bodies_.sites().find(name);
-    if (site != bodies_.sites().end()) return RobotPoint{site->second.link, site->second.frame.p};
+    if (site != bodies_.sites().end()) return Frame{site->second.link, site->second.frame};
     file_.xml.fault(e, format("there is no site {}", quote(name)), "Name a site of a body.");
     return std::nullopt;
   }
 
-  /// Point that an object of a type is at.
-  std::optional<RobotPoint> find_point(const XmlFile::Element& e, const std::string& type,
-                                       const std::string& name) {
+  /// Frame of an object of a type; of a body that of its inertia.
+  std::optional<Frame> find_frame(const XmlFile::Element& e, const std::string& type,
+                                  const std::string& name) {
     if (type == "site") return find_site(e, name);
     if (type == "body" || type == "xbody") {
-      for (const RobotLink& link : robot_.links)
-        if (link.name == name)
-          return RobotPoint{name, type == "body" ? link.mass.com : Vec3(Vec3::Zero())};
+      for (const RobotLink& link : robot_.links) {
+        if (link.name != name) continue;
+        if (type == "xbody") return Frame{name, {}};
+        const auto axes = bodies_.axes().find(name);
+        return Frame{
+            name,
+            {link.mass.com, axes == bodies_.axes().end() ? Mat3::Identity().eval() : axes->second}};
+      }
       file_.xml.fault(e, format("there is no body {}", quote(name)), "Name a body.");
       return std::nullopt;
     }
@@ -117,22 +128,46 @@ class SensorReader {
     return std::nullopt;
   }
 
+  void say(const XmlFile::Element& e, std::string what) {
+    file_.notes.push_back({ImportNote::Kind::approximated, file_.xml.place(e), std::move(what)});
+  }
+
+  /// A rotation as the numbers of its quaternion.
+  static std::string turn_text(const Mat3& R) {
+    const Quat q = Quat(R).normalized();
+    return format("{:.6g} {:.6g} {:.6g} {:.6g}", q.w(), q.x(), q.y(), q.z());
+  }
+
   bool read_body(const XmlFile::Element& e, std::string_view tag, RobotProbe& probe) {
     const bool on_site = !tag.starts_with("frame");
     const std::string type = on_site ? std::string("site") : file_.xml.required_text(e, "objtype");
-    const auto point = find_point(e, type, probe.of);
-    if (!point) return false;
-    probe.point = *point;
+    const auto frame = find_frame(e, type, probe.of);
+    if (!frame) return false;
+    probe.point = {frame->link, frame->pose.p};
     if (tag == "framequat")
       probe.rotation = "quaternion";
     else if (tag.ends_with("axis"))
       probe.rotation = "matrix";
+    if (!probe.rotation.empty() && !frame->pose.R.isIdentity(0.0))
+      say(e, format("the rotation of the sensor {} is that of the body {}; multiply it from the "
+                    "right by that of its frame in the body, the quaternion {}",
+                    quote(probe.name), quote(frame->link), turn_text(frame->pose.R)));
+    if (tag == "framelinacc" && !robot_.gravity.isZero(0.0))
+      say(e, format("the acceleration of the sensor {} is that of the point, from which MuJoCo "
+                    "subtracts gravity",
+                    quote(probe.name)));
     probe.angular = tag == "gyro" || tag.starts_with("frameang");
     const std::string reference = file_.xml.text(e, "refname").value_or("");
     if (reference.empty()) return true;
-    const auto seen = find_point(e, file_.xml.text(e, "reftype").value_or("body"), reference);
-    if (seen) probe.seen_from = seen->link;
-    return seen.has_value();
+    const auto seen = find_frame(e, file_.xml.text(e, "reftype").value_or("body"), reference);
+    if (!seen) return false;
+    probe.seen_from = seen->link;
+    if (!seen->pose.is_identity())
+      say(e, format("the sensor {} is seen from the body {}, and in MuJoCo from a frame in it at "
+                    "{:.6g} {:.6g} {:.6g}, turned by the quaternion {}",
+                    quote(probe.name), quote(seen->link), seen->pose.p.x(), seen->pose.p.y(),
+                    seen->pose.p.z(), turn_text(seen->pose.R)));
+    return true;
   }
 
   MjcfFile& file_;
@@ -150,7 +185,7 @@ void read_sensors(MjcfFile& file, const MjcfBodies& bodies, Robot& robot) {
          e = e->NextSiblingElement()) {
       static_cast<void>(file.xml.children(*section, e->Name()));
       reader.read(*e);
-      file.xml.skip(*e);
+      file.skip(*e);
     }
 }
 

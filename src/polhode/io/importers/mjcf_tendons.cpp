@@ -38,13 +38,18 @@ void MjcfTendons::read() {
       const std::string_view kind = e->Name();
       file_.ignored.attributes(*e, {"group", "width", "material", "rgba", "user", "solreflimit",
                                     "solimplimit", "solreffriction", "solimpfriction", "margin"});
-      if (tag.has("actuatorfrcrange"))
-        file_.ignored.add(*e, "'actuatorfrcrange' of a tendon", "limits nothing");
+      if (const auto range = tag.numbers("actuatorfrcrange", 2, 2);
+          range.size() == 2 && range[0] < range[1] &&
+          tag.boolean("actuatorfrclimited", file_.compiler.auto_limits))
+        force_ranges_[name] = range;
+      if (tag.has("springyield"))
+        refusals_.add(*e, format("the spring of the tendon {} yields", quote(name)),
+                      "Leave 'springyield' out.");
       if (kind == "fixed")
         read_sum(tag, name.empty() ? format("tendon_{}", sums_.size() + 1) : name);
       else if (kind == "spatial")
         read_spatial(tag, name);
-      file_.xml.skip(*e);
+      file_.skip(*e);
     }
 }
 
@@ -84,7 +89,12 @@ double effort_of(const MjcfTag& tag, MjcfRefusals& refusals, const char* attribu
 }  // namespace
 
 MjcfTendons::Rest MjcfTendons::rest_of(const MjcfTag& tag, double length_at_rest) {
-  const std::vector<double> given = tag.numbers("springlength", 1, 2);
+  // One number is both lengths, also where a default has two.
+  const XmlFile::Element* giver = file_.giver(tag.e, "springlength", tag.kinds, tag.child_class);
+  const std::vector<double> given =
+      giver == nullptr
+          ? std::vector<double>()
+          : file_.xml.numbers(*giver, "springlength", 1, 2).value_or(std::vector<double>());
   if (given.empty() || given[0] == -1.0) return {length_at_rest, length_at_rest};
   const Rest rest{given[0], given.size() > 1 ? given[1] : given[0]};
   if (rest.lower <= rest.upper) return rest;
@@ -129,10 +139,14 @@ void MjcfTendons::read_sum(const MjcfTag& tag, const std::string& name) {
 MjcfTendons::Law MjcfTendons::law_of(const MjcfTag& tag, const std::string& name,
                                      double length_at_rest) {
   Law law;
-  law.stiffness = effort_of(tag, refusals_, "stiffness", name);
-  law.damping = effort_of(tag, refusals_, "damping", name);
+  if (file_.flags.springs) law.stiffness = effort_of(tag, refusals_, "stiffness", name);
+  if (file_.flags.dampers) law.damping = effort_of(tag, refusals_, "damping", name);
   if (options_.friction) law.friction = effort_of(tag, refusals_, "frictionloss", name);
   law.armature = effort_of(tag, refusals_, "armature", name);
+  if (const auto more = of_actuators_.find(name); more != of_actuators_.end()) {
+    law.damping += more->second.first;
+    law.armature += more->second.second;
+  }
   if (law.stiffness != 0.0) law.rest = rest_of(tag, length_at_rest);
   law.range = range_of(tag, name);
   return law;
@@ -255,14 +269,19 @@ void MjcfTendons::read_spatial(const MjcfTag& tag, const std::string& name) {
   RobotCable cable;
   cable.at = &tag.e;
   cable.name = name.empty() ? format("tendon_{}", robot_.cables.size() + 1) : name;
-  cable.stiffness = effort_of(tag, refusals_, "stiffness", cable.name);
-  cable.damping = effort_of(tag, refusals_, "damping", cable.name);
+  if (file_.flags.springs) cable.stiffness = effort_of(tag, refusals_, "stiffness", cable.name);
+  if (file_.flags.dampers) cable.damping = effort_of(tag, refusals_, "damping", cable.name);
+  double armature = tag.number("armature", 0.0);
+  if (const auto more = of_actuators_.find(cable.name); more != of_actuators_.end()) {
+    cable.damping += more->second.first;
+    armature += more->second.second;
+  }
   const auto refuse_property = [&](bool is, const char* what, const char* hint) {
     if (is) refusals_.add(tag.e, format("the tendon {} has {}", quote(cable.name), what), hint);
   };
   refuse_property(options_.friction && tag.number("frictionloss", 0.0) != 0.0, "friction of a line",
                   "Import without friction.");
-  refuse_property(tag.number("armature", 0.0) != 0.0, "an armature", "Leave it out.");
+  refuse_property(armature != 0.0, "an armature", "Leave it out.");
   if (!read_path(tag.e, cable)) return;
   if (const std::optional<Rest> range = range_of(tag, cable.name); range) {
     refuse_property(!is_straight(cable), "limits of a length over several points",

@@ -21,8 +21,18 @@ class MjcfTendons {
               const ImportOptions& options, Robot& robot)
       : file_(file), refusals_(refusals), bodies_(bodies), options_(options), robot_(robot) {}
 
+  /// Adds a damping and an armature of an actuator on a tendon. To be called before `read`.
+  void add_of_actuator(const std::string& tendon, double damping, double armature) {
+    of_actuators_[tendon].first += damping;
+    of_actuators_[tendon].second += armature;
+  }
   /// Reads all <tendon> sections.
   void read();
+  /// Bounds of the sum of the forces of its actuators; empty: none.
+  [[nodiscard]] std::vector<double> force_range(const std::string& tendon) const {
+    const auto found = force_ranges_.find(tendon);
+    return found == force_ranges_.end() ? std::vector<double>() : found->second;
+  }
 
   /// Joints of fixed tendons and their factors, by the tendon's name.
   using Sums = std::map<std::string, std::vector<std::pair<std::string, double>>>;
@@ -71,6 +81,8 @@ class MjcfTendons {
   const ImportOptions& options_;
   Robot& robot_;
   Sums sums_;
+  std::map<std::string, std::pair<double, double>> of_actuators_;  ///< Damping, armature.
+  std::map<std::string, std::vector<double>> force_ranges_;
   std::map<std::string, const Element*> sum_tags_;    ///< Tags of fixed tendons.
   std::map<std::string, std::string> length_joints_;  ///< By fixed tendon.
   std::optional<MjcfInertia> inertia_;

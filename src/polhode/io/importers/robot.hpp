@@ -203,6 +203,7 @@ struct RobotContactPair {
 /// Exclusions and pairs of contacts, for a model with a section of contacts.
 struct RobotContacts {
   bool wanted = false;
+  bool off = false;       ///< The file switches them off.
   bool friction = false;  ///< By the larger coefficient of two shapes.
   std::vector<RobotExclusion> exclusions;
   std::vector<RobotContactPair> pairs;

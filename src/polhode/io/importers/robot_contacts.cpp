@@ -151,4 +151,20 @@ SourceNode ContactWriter::section(const SourceNode& bodies) {
   return contacts;
 }
 
+void note_idle_shapes(const Robot& robot, const RobotTree& tree, const XmlFile& xml,
+                      std::vector<ImportNote>& notes) {
+  if (robot.contacts.wanted || robot.contacts.off) return;
+  std::size_t shapes = 0;
+  std::set<int> bodies;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    shapes += robot.links[i].collision.size();
+    if (!robot.links[i].collision.empty()) bodies.insert(tree.body[i]);
+  }
+  if (bodies.size() < 2) return;
+  notes.push_back({ImportNote::Kind::approximated, xml.place(xml.root()),
+                   format("{} shapes of {} bodies touch nothing: write a model file with import: "
+                          "{{file: ..., shapes: collision}} and contacts: {{}} for them to touch",
+                          shapes, bodies.size())});
+}
+
 }  // namespace polhode::io

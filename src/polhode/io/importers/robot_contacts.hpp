@@ -41,4 +41,8 @@ class ContactWriter {
   std::set<double> frictions_;  ///< Coefficients of all shapes that touch.
 };
 
+/// Says how many shapes of a file touch nothing, as the model has no contacts.
+void note_idle_shapes(const Robot& robot, const RobotTree& tree, const XmlFile& xml,
+                      std::vector<ImportNote>& notes);
+
 }  // namespace polhode::io

@@ -112,4 +112,15 @@ SourceNode actuator_load(const NodeBuilder& make, const RobotActuator& actuator,
   return load;
 }
 
+void put_coordinates(const NodeBuilder& make, const std::vector<const RobotJoint*>& joints,
+                     SourceNode& load) {
+  std::vector<SourceNode> list;
+  bool screws = false;
+  for (const RobotJoint* joint : joints) {
+    list.push_back(make.text(joint->turns() ? "rz" : "z"));
+    screws = screws || joint->type == "screw";
+  }
+  if (screws) make.put(load, "coordinates", make.list(std::move(list)));
+}
+
 }  // namespace polhode::io

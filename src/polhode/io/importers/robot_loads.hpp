@@ -41,4 +41,8 @@ void put_free_damping(const NodeBuilder& make, const RobotJoint& joint, const st
                                        const RobotJoint& joint, const std::string& name,
                                        double turns);
 
+/// Coordinates of a coupling, if a screw, which has two, is among its joints.
+void put_coordinates(const NodeBuilder& make, const std::vector<const RobotJoint*>& joints,
+                     SourceNode& load);
+
 }  // namespace polhode::io

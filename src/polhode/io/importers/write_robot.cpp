@@ -23,6 +23,9 @@ namespace {
 
 using Kind = ImportNote::Kind;
 
+/// Difference of rotations below which two of them are one [rad]: that of numbers with nine digits.
+constexpr double kSameRotation = 1e-8;
+
 /// A name of SDFormat with "__" instead of "::", which needs no note.
 std::string scoped_name(std::string name) {
   for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at + 2))
@@ -44,6 +47,7 @@ class ModelWriter {
 
   void write() {
     const NodeBuilder make{xml_.line(xml_.root())};
+    note_idle_shapes(robot_, tree_, xml_, out_.notes);
     name_all();
     contacts_.emplace(robot_, tree_, link_name_, xml_, out_.notes);
     SourceNode bodies = make.map(), joints = make.map(), loads = make.map();
@@ -317,6 +321,13 @@ class ModelWriter {
     make.put(node, "type", make.text(type));
     make.put(node, "bodies", bodies_of(make, links[0], links[1]));
     const bool link = type == "slack_link";
+    const Mat3 turn = (at(tree_.world, links[0]) * loop.frames[0]).R.transpose() *
+                      (at(tree_.world, links[1]) * loop.frames[1]).R;
+    if (type == "fixed" && !turn.isIdentity(kSameRotation))
+      refuse(*loop.at,
+             format("the constraint {} holds another rotation than that of the start",
+                    quote(loop.name)),
+             "Start where it is satisfied.");
     put_frames(make, node, in_body(links[0]) * loop.frames[0], in_body(links[1]) * loop.frames[1],
                loop.axis, type != "fixed" && type != "spherical" && !link, false);
     if (link) {
@@ -333,18 +344,6 @@ class ModelWriter {
       make.put(node, "limits", std::move(limits));
     }
     make.put(joints, joint_name_.at(loop.name), std::move(node));
-  }
-
-  /// Coordinates of a coupling, if a screw, which has two, is among its joints.
-  static void put_coordinates(const NodeBuilder& make, const std::vector<const RobotJoint*>& joints,
-                              SourceNode& load) {
-    std::vector<SourceNode> list;
-    bool screws = false;
-    for (const RobotJoint* joint : joints) {
-      list.push_back(make.text(joint->turns() ? "rz" : "z"));
-      screws = screws || joint->type == "screw";
-    }
-    if (screws) make.put(load, "coordinates", make.list(std::move(list)));
   }
 
   /// A coupling of the joints of a row that move; the others have their start in the sum.
