@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from ._result import Result, Table
 
 # FEBio's names of values that columns of a probe have under other names.
-_COLUMNS = {"omx": "wx", "omy": "wy", "omz": "wz", "alx": "alphax", "aly": "alphay", "alz": "alphaz"}
+_COLUMNS = {"omx": "wx", "omy": "wy", "omz": "wz", "alx": "alphax", "aly": "alphay", "alz": "alphaz",
+            "thx": "thetax", "thy": "thetay", "thz": "thetaz"}
 _DIGITS = 6  # of C's "%lg", which FEBio uses
 
 
@@ -28,10 +29,10 @@ def _numbers(text: str) -> "list[int]":
     return numbers
 
 
-def _table(result: "Result", wanted: str) -> "Optional[Table]":
-    """The probe that a request became: of its name, or of one with a number if the name was taken."""
+def _tables(result: "Result", wanted: str) -> "list[Table]":
+    """The probes that requests became: of its name, or of one with a number if the name was taken; shortest first."""
     names = [name for name in result.probes if name == wanted or re.fullmatch(re.escape(wanted) + r"_\d+", name)]
-    return result.probes[min(names, key=len)] if names else None
+    return [result.probes[name] for name in sorted(names, key=lambda name: (len(name), name))]
 
 
 def _items(kind: str, request: Any, root: Any) -> "list[tuple[int, str]]":
@@ -57,6 +58,15 @@ def _column(table: "Table", name: str) -> Any:
     return None
 
 
+def _columns(number: int, tables: "list[Table]", names: "list[str]") -> "Optional[tuple[int, Table, list[Any]]]":
+    """The columns of the first table that has all of them."""
+    for table in tables:
+        columns = [_column(table, name) for name in names]
+        if all(column is not None for column in columns):
+            return number, table, columns
+    return None
+
+
 def write_febio_log(result: "Result", model: "Union[str, os.PathLike[str]]",
                     folder: "Union[str, os.PathLike[str]]" = ".") -> "list[str]":
     """Writes the requests of an FEBio file's <logfile> for rigid_body_data and node_data as FEBio does.
@@ -78,9 +88,9 @@ def write_febio_log(result: "Result", model: "Union[str, os.PathLike[str]]",
         names = [name.strip() for name in data.split(";")]
         lines = []
         if kind in ("rigid_body_data", "node_data"):
-            tables = [(n, _table(result, probe)) for n, probe in _items(kind, request, root)]
-            columns = [(n, table, [_column(table, name) for name in names]) for n, table in tables if table is not None]
-            complete = len(columns) == len(tables) and all(c is not None for _, _, list_ in columns for c in list_)
+            items = _items(kind, request, root)
+            columns = [found for n, probe in items for found in [_columns(n, _tables(result, probe), names)] if found]
+            complete = len(columns) == len(items)
             if columns and complete:
                 lines = _lines(columns, request.get("name") or data, request.get("delim") or " ")
         if not lines:

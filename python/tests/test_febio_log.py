@@ -83,6 +83,17 @@ def test_lists_of_numbers_are_those_of_febio(tmp_path: pathlib.Path) -> None:
     assert [int(row[0]) for row in blocks(paths[0])[0][3]] == [1, 2]
 
 
+def test_each_request_for_a_body_is_written(tmp_path: pathlib.Path) -> None:
+    requests = [f'<rigid_body_data data="{data}" file="{name}.txt">2</rigid_body_data>'
+                for name, data in (("a", "x;y;z"), ("b", "qx;qy;qz;qw"), ("c", "thx;thy;thz"), ("d", "omz"))]
+    paths = written(tmp_path, "".join(requests))
+    assert [pathlib.Path(p).name for p in paths] == ["a.txt", "b.txt", "c.txt", "d.txt"]
+    for (_, t, _, b), (_, _, _, c), (_, _, _, d) in zip(*(blocks(p) for p in paths[1:])):
+        assert b[0] == pytest.approx([2, 0, 0, np.sin(0.25 * t), np.cos(0.25 * t)], abs=2e-5)
+        assert c[0] == pytest.approx([2, 0, 0, 0.5 * t], abs=2e-4)
+        assert d[0] == pytest.approx([2, 0.5], abs=1e-9)
+
+
 def test_what_no_probe_has_is_a_warning(tmp_path: pathlib.Path) -> None:
     with pytest.warns(UserWarning, match='<element_data data="sx"> is not written: no probe has it'):
         assert written(tmp_path, '<element_data data="sx">1</element_data>') == []
