@@ -154,6 +154,14 @@ class SolidStep {
   return solids::make_material("materials.m", d);
 }
 
+/// The same whose stress relaxes, within a step and in ten; its constant part has a factor.
+[[nodiscard]] inline std::shared_ptr<const solids::Material> relaxing_material(
+    solids::MaterialDescription d) {
+  d.relaxation = {{0.7, 0.05}, {0.4, 1.1}};
+  d.long_term_ratio = 0.6;
+  return solids::make_material("materials.m", d);
+}
+
 /// One element of a kind, slightly distorted; lengths of about 2.
 /// Distance of the nearest nodes of a reference cell over half an edge of a tetrahedron, at most 1:
 /// strains by random displacements of nodes are the larger the nearer these are.

@@ -24,6 +24,7 @@ struct BoundSpecs {
   JointStrengthSpec strength{};
   JointEnforcement enforcement{};
   ViscositySpec viscosity{};
+  RelaxationSpec relaxation{};
 
   /// Calls `visitor(spec)` for each.
   template <class Visitor>
@@ -44,6 +45,7 @@ struct BoundSpecs {
     visitor(strength);
     visitor(enforcement);
     visitor(viscosity);
+    visitor(relaxation);
   }
 
   /// Model that contains each of them.
@@ -68,6 +70,7 @@ struct BoundSpecs {
     joint.breaks = strength;
     joint.enforcement = enforcement;
     m.materials.emplace_back().viscosity = viscosity;
+    m.materials.back().relaxation = {relaxation};
     return m;
   }
 };

@@ -27,6 +27,7 @@ struct FlexibleScene {
     std::string material = "neo_hookean";
     std::map<std::string, double> moduli{{"youngs_modulus", 2000.0}, {"poisson_ratio", 0.3}};
     double relaxation_time = 0.0;  ///< Kelvin-Voigt [s].
+    std::vector<solids::Relaxation> relaxation = {};
     std::vector<double> cells{6, 1, 1};
     bool conserving = true, two_bodies = false, hinge = false;
     Vec3 gravity = Vec3::Zero();
@@ -78,6 +79,7 @@ struct FlexibleScene {
     material.kind = o.material;
     material.values = {o.moduli.begin(), o.moduli.end()};
     material.relaxation_time = o.relaxation_time;
+    material.relaxation = o.relaxation;
     material.fibres = o.fibres;
     solids::SolidElementsDescription d;
     d.name = "solids.bar";

@@ -118,6 +118,24 @@ analysis: {duration: 1 s, step: 5 ms}
                              "wheel.yaml");
 }
 
+/// A tumbling strip whose stress relaxes, with an elastic region.
+Model relaxing_strip() {
+  return io::read_model_text(R"(format: 1
+materials:
+  soft: {type: mooney_rivlin_uncoupled, c1: 20 kPa, bulk_modulus: 2 MPa, density: 1000, relaxation: [{modulus_ratio: 0.8, time: 5 ms}, {modulus_ratio: 0.5, time: 1 s}]}
+  hard: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}
+bodies: {hub: {mass: 0.1, inertia: [1e-4, 1e-4, 1e-4], angular_velocity: [3, 20, 5]}}
+solids:
+  strip:
+    mesh: {block: {size: [0.2, 0.03, 0.02], cells: [4, 1, 1]}, position: [0.1, 0, 0]}
+    material: soft
+    regions: {tip: {material: hard, within: {box: {from: [0.05, -1, -1], to: [1, 1, 1]}}}}
+    bonded: {hub: xmin}
+analysis: {duration: 0.2 s, step: 5 ms}
+)",
+                             "strip.yaml");
+}
+
 std::vector<RestartCase> cases() {
   return {
       {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
@@ -141,6 +159,8 @@ std::vector<RestartCase> cases() {
       {"OnTriangles", on_triangles()},
       {"ControlledWheel", controlled_wheel()},
       {"ControlledWheelFinely", with(controlled_wheel(), 1.0, 5e-5, {})},
+      {"RelaxingStrip", relaxing_strip()},
+      {"RelaxingStripAutomatic", with(relaxing_strip(), 0.04, {}, 1e-4)},
       {"OnTrianglesByImpulses", by_impulses(on_triangles())},
   };
 }

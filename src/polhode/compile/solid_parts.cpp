@@ -12,6 +12,9 @@ solids::MaterialDescription material_description(const MaterialSpec& material) {
     d.fibres.push_back({.law = fibre.law, .values = fibre.parameters});
   d.relaxation_time = material.viscosity.relaxation_time;
   d.viscous = {material.viscosity.lame, material.viscosity.shear};
+  for (const RelaxationSpec& term : material.relaxation)
+    d.relaxation.push_back({term.modulus_ratio, term.time});
+  d.long_term_ratio = material.long_term_ratio;
   return d;
 }
 

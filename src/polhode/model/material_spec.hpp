@@ -27,6 +27,12 @@ struct FibreSpec {
   Vec3 direction = Vec3::UnitX();            ///< Unit vector in the mesh's own axes [-].
 };
 
+/// A term of the relaxation series of a material.
+struct RelaxationSpec {
+  double modulus_ratio = 0.0;  ///< Of the stress that relaxes to the elastic stress [-].
+  double time = 0.0;           ///< In which it falls to 1/e of itself [s].
+};
+
 /// Description of a material of deformable solids.
 struct MaterialSpec {
   std::string name, type;  ///< type: a kind of the registry of materials.
@@ -34,7 +40,9 @@ struct MaterialSpec {
   std::map<std::string, double> parameters;  ///< By the registry's names, SI. Absent = default.
   double density = 0.0;                      ///< In the undeformed shape [kg/m^3].
   ViscositySpec viscosity;
-  std::vector<FibreSpec> fibres;  ///< By family.
+  std::vector<RelaxationSpec> relaxation;  ///< Empty: the stress has no memory.
+  double long_term_ratio = 1.0;            ///< Of the stress that stays to the elastic stress [-].
+  std::vector<FibreSpec> fibres;           ///< By family.
 };
 
 }  // namespace polhode

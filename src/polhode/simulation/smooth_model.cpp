@@ -5,7 +5,9 @@
 
 #include <polhode/beams/slide_on_beam.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/simulation/smooth_model.hpp>
+#include <polhode/solids/solid_elements.hpp>
 
 namespace polhode {
 
@@ -152,6 +154,10 @@ void Search::elements(const Nodes& nodes) {
     if (as_slide(group))
       refuse(format("'{}' slides along a beam", group.name()), "whose state it does not combine",
              kOrderTwo);
+    if (const solids::SolidElements* solid = solids::as_solid(group);
+        solid && !solid->material().relaxation().empty())
+      refuse(format("the stress of {} relaxes", quote(group.name())),
+             "and its steps are not symmetric in time", kOrderTwo);
     if (group.barrier_constraint() || group.changing_sparsity() || group.surface_impacts())
       refuse(format("the {} of '{}'", group.kind(), group.name()), "is not smooth", kOrderTwo);
   }

@@ -8,6 +8,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/solids/cell_stability.hpp>
 #include <polhode/solids/elements/extrapolation.hpp>
 #include <polhode/solids/elements/reference_data.hpp>
@@ -80,6 +81,9 @@ class SolidGroup final : public SolidElements {
     data_.viscous = material_->viscous();
     data_.viscous_lame = material_->viscous_moduli().lame;
     data_.viscous_shear = material_->viscous_moduli().shear;
+    if (const std::size_t terms = material_->relaxation().size(); terms > 0)
+      data_.memory_size = kMemorySize * (1 + static_cast<int>(terms));
+    data_.first_memory = static_cast<std::ptrdiff_t>(reference_.elements) * sizes_.history();
   }
 
   std::string kind() const override { return kind_.name; }
@@ -90,10 +94,11 @@ class SolidGroup final : public SolidElements {
     return std::span(reference_.nodes)
         .subspan(static_cast<std::size_t>(element) * sizes_.nodes, sizes_.nodes);
   }
-  bool conservative() const override { return data_.conserving && !data_.viscous; }
-  bool dissipates() const override { return data_.viscous; }
+  bool conservative() const override { return data_.conserving && !dissipates(); }
+  bool dissipates() const override { return data_.viscous || data_.memory_size > 0; }
   std::size_t history_size() const override {
-    return static_cast<std::size_t>(reference_.elements) * sizes_.history();
+    return static_cast<std::size_t>(reference_.elements) *
+           static_cast<std::size_t>(sizes_.history() + sizes_.points * data_.memory_size);
   }
   std::size_t scratch_size() const override {
     return static_cast<std::size_t>(reference_.blocks) * kernels_.width * sizes_.scratch();
@@ -168,6 +173,10 @@ class SolidGroup final : public SolidElements {
 
   void commit(const NodeStep& step, double* history, const double* scratch) const override {
     const int n = sizes_.modes(), W = kernels_.width;
+    if (data_.memory_size > 0) {
+      const ElementStep s = motion(step, history, const_cast<double*>(scratch), Mat3::Identity());
+      kernels_.kinds[kind_.kernel].remember(data_, s, history);
+    }
     if (sizes_.history() == 0) return;
     for (int e = 0; e < reference_.elements; ++e) {
       double* h = history + static_cast<std::size_t>(e) * sizes_.history();
@@ -271,9 +280,12 @@ class SolidGroup final : public SolidElements {
       for (int j = 0; j < 3; ++j) s.turn[3 * i + j] = turn(i, j);
   }
 
-  static ElementStep motion(const NodeStep& step, const double* history, double* scratch,
-                            const Mat3& turn) {
+  [[nodiscard]] ElementStep motion(const NodeStep& step, const double* history, double* scratch,
+                                   const Mat3& turn) const {
     ElementStep s;
+    if (data_.memory_size > 0)
+      s.memory = {*material_, step.rate != 0.0 ? step.context.dt : memory_time(step.context),
+                  step.alpha_f};
     s.x_n = step.x_n;
     s.x_n1 = step.x_n1;
     s.v_n = step.v_n;
@@ -329,6 +341,9 @@ void check(const SolidElementsDescription& d) {
                        format("element {} names node {}, but there are {} (the first is 0)", i / n,
                               d.connectivity[i], d.X.size()),
                        "Give numbers of nodes that exist");
+  if (!d.material->relaxation().empty() && !d.conserving)
+    throw InputError(d.name, "the stress of its material relaxes, and 'stress' is midpoint",
+                     "Use stress: conserving");
   if (!d.material->has_fibres()) return;
   const std::size_t elements = d.connectivity.size() / n, families = d.material->fibres().size();
   if (d.fibres.size() != families && d.fibres.size() != families * elements)
@@ -343,6 +358,14 @@ void check(const SolidElementsDescription& d) {
 }
 
 }  // namespace
+
+const SolidElements* as_solid(const ElementGroup& group) {
+  const std::vector<ElementKind>& kinds = element_kinds();
+  const bool is_solid = std::any_of(kinds.begin(), kinds.end(), [&](const ElementKind& kind) {
+    return kind.name == group.kind();
+  });
+  return is_solid ? static_cast<const SolidElements*>(&group) : nullptr;
+}
 
 std::unique_ptr<SolidElements> make_solid_elements(SolidElementsDescription d) {
   check(d);

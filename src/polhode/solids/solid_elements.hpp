@@ -55,6 +55,9 @@ class SolidElements : public ElementGroup, public InternalUnknowns {
   [[nodiscard]] virtual std::string stretch_warning(const LeastStretch& least) const = 0;
 };
 
+/// A group of elements as solid elements; null if it is of another kind.
+[[nodiscard]] const SolidElements* as_solid(const ElementGroup& group);
+
 /// @throws InputError for bad numbers of nodes, a density that is not positive, missing directions
 /// of fibres, elements that are inverted or flat in the undeformed shape (which are named).
 [[nodiscard]] std::unique_ptr<SolidElements> make_solid_elements(SolidElementsDescription d);

@@ -9,6 +9,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/solids/solid_elements.hpp>
 #include <polhode/statics/follower_loads.hpp>
 #include <polhode/statics/modal_matrices.hpp>
 #include <polhode/statics/modes.hpp>
@@ -304,6 +305,14 @@ const char* kind_name(ModeKind kind) {
 /// @eq{modes-saddle} @eq{modes-damped}
 ModesReport find_modes(const System& system, const State& equilibrium, const ModeOptions& options) {
   ModesReport report;
+  for (int g = 0; g < system.nodes().group_count(); ++g)
+    if (const solids::SolidElements* solid = solids::as_solid(system.nodes().group(g));
+        solid && !solid->material().relaxation().empty())
+      throw InputError(solid->name(),
+                       "the stress of its material relaxes, so that its stiffness depends on the "
+                       "frequency, which modes have not",
+                       "Leave 'relaxation' out for the modes of the long-term stiffness, or "
+                       "multiply its moduli by 1 and the modulus ratios for those of fast motions");
   if (6 * system.body_count() + system.nodes().unknowns() == 0) {
     report.freedoms = 0;
     report.warnings.push_back("every degree of freedom is constrained: there are no modes");

@@ -81,6 +81,8 @@ void StaticNewton::enter(double load_factor, double last) {
   c.dt = load_factor != last ? load_factor - last : 1.0;
   c.ga.delta = grows && load_factor != last ? 1.0 : 0.0;
   c.t_n = t - c.dt;
+  // Loads at the start of a history act suddenly, at its first instant.
+  if (follows) c.ga.rho_inf = grows || load_factor == last ? 0.0 : c.dt;
 }
 
 /// Begins a search from the equilibrium of a state.

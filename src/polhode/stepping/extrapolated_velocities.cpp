@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <polhode/solids/solid_elements.hpp>
 #include <polhode/stepping/extrapolated_velocities.hpp>
 
 namespace polhode {
@@ -15,15 +16,13 @@ namespace {
 constexpr double kLargestWeights = 12.0;
 constexpr std::size_t kFewestSteps = 3;
 
-/// Nodes of dissipative elements with mass: those of viscous materials.
+/// Nodes of viscous materials, whose stress depends on velocities.
 std::vector<bool> viscous_nodes(const Nodes& nodes) {
   std::vector<bool> viscous(static_cast<std::size_t>(nodes.count()), false);
   for (int g = 0; g < nodes.group_count(); ++g) {
     const ElementGroup& group = nodes.group(g);
-    if (!group.dissipates() || group.size() == 0) continue;
-    const auto n = static_cast<std::size_t>(group.nodes_per_element());
-    std::vector<double> M(n * n);
-    if (!group.mass(0, M.data())) continue;
+    const solids::SolidElements* solid = solids::as_solid(group);
+    if (solid == nullptr || !solid->material().viscous()) continue;
     for (int e = 0; e < group.size(); ++e)
       for (const int node : group.nodes(e)) viscous[static_cast<std::size_t>(node)] = true;
   }

@@ -71,6 +71,10 @@ TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
       {"pressure", [](Model& m) { m.loads[0].value = std::make_shared<Wave>(1.01); }},
       {"faces", [](Model& m) { m.loads[0].selection[0].value = 0.1; }},
       {"Young's modulus", [](Model& m) { m.materials[0].parameters["youngs_modulus"] = 2e6; }},
+      {"relaxation",
+       [](Model& m) {
+         m.materials[0].relaxation = {{0.5, 1e-3}};
+       }},
       {"viscosity", [](Model& m) { m.materials[0].viscosity.relaxation_time = 1e-3; }},
       {"fibres", [](Model& m) { m.materials[0].fibres[0].direction = Vec3::UnitY(); }},
       {"mesh", [](Model& m) { m.solids[0].mesh.nodes[0].x() = 1e-9; }},

@@ -66,6 +66,26 @@ TEST(MaterialRegistry, NamesMissingUnknownAndSuperfluousValues) {
               refused("Did you mean 'exponential'?"));
 }
 
+TEST(MaterialRegistry, RefusesImpossibleTermsOfRelaxation) {
+  const auto with = [](const std::vector<solids::Relaxation>& terms, double rest = 1.0) {
+    return solids::MaterialDescription{.kind = "neo_hookean",
+                                       .values = {{"youngs_modulus", 1e6}, {"poisson_ratio", 0.3}},
+                                       .relaxation = terms,
+                                       .long_term_ratio = rest};
+  };
+  const auto m = solids::make_material("m", with({{0.5, 1.0}, {2.0, 1e-3}}, 0.0));
+  EXPECT_EQ(m->relaxation().size(), 2u);
+  EXPECT_EQ(m->long_term_ratio(), 0.0);
+  EXPECT_NO_THROW(
+      solids::make_material("m", with(std::vector<solids::Relaxation>(12, {0.1, 1.0}))));
+  EXPECT_THAT(make(with(std::vector<solids::Relaxation>(13, {0.1, 1.0}))),
+              refused("13 terms, and at most 12"));
+  EXPECT_THAT(make(with({{0.5, 1.0}, {0.5, 0.0}})), refused("relaxation.1", "'time' is 0"));
+  EXPECT_THAT(make(with({{-0.5, 1.0}})), refused("'modulus_ratio' is -0.5"));
+  EXPECT_THAT(make(with({{0.5, 1.0}}, -0.1)), refused("'long_term_ratio' is -0.1"));
+  EXPECT_THAT(make(with({}, 0.5)), refused("without 'relaxation'"));
+}
+
 TEST(MaterialRegistry, TakesViscosityAsATimeOrAsModuli) {
   const solids::ParameterValues values = {{"youngs_modulus", 2.6}, {"poisson_ratio", 0.3}};
   const auto m =

@@ -37,7 +37,10 @@ class FebLaw {
   static FibreLaw fibre_law(const std::string& type);
   static bool is_fibre(const std::string& type);
 
-  bool put_mixture(const Element& e, const std::string& type);
+  bool put_law(const Element& e, const std::string& type, const Mat3& outer);
+  bool put_mixture(const Element& e, const std::string& type, const Mat3& outer);
+  /// Reads a material whose stress relaxes: its elastic part, and the terms of its series.
+  bool put_viscoelastic(const std::string& type);
   bool put_matrix(const Element& e, const std::string& type, const Mat3& outer);
   bool put_isotropic(const Element& e);
   bool put_ogden_terms(const Element& e);
@@ -63,6 +66,7 @@ class FebLaw {
   std::vector<SourceNode> fibres_;
   std::vector<Vec3> local_;      ///< Their directions: of the world, until all are read.
   Mat3 own_ = Mat3::Identity();  ///< Axes of the material as a whole.
+  bool relaxes_ = false;         ///< It is a viscoelastic one, of which others are parts.
   std::vector<bool> isochoric_;  ///< By family, also those without stiffness.
   bool uncoupled_ = false, sum_of_coupled_ = false;
   double bulk_ = 0.0;  ///< Of an uncoupled material [Pa].

@@ -106,14 +106,75 @@ bool FebLaw::put_matrix(const Element& e, const std::string& type, const Mat3& o
                "Materials are rigid body, neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, "
                "Mooney-Rivlin, trans iso Mooney-Rivlin, coupled Mooney-Rivlin, Ogden, Ogden "
                "unconstrained, Veronda-Westmann, Holzapfel-Gasser-Ogden, and mixtures of one of "
-               "them with fibres.");
+               "them with fibres; and viscoelastic ones of these.");
   return false;
 }
 
-bool FebLaw::put_mixture(const Element& e, const std::string& type) {
+bool FebLaw::put_law(const Element& e, const std::string& type, const Mat3& outer) {
+  if (type == "viscoelastic" || type == "uncoupled viscoelastic") {
+    if (&e == &at_) return put_viscoelastic(type);
+    file_.refuse(e, "a viscoelastic material within another one is not read", "Give one of them.");
+    return false;
+  }
+  if (type == "solid mixture" || type == "uncoupled solid mixture")
+    return put_mixture(e, type, outer);
+  return put_matrix(e, type, outer);
+}
+
+bool FebLaw::put_viscoelastic(const std::string& type) {
+  constexpr int kTerms = 6;
+  relaxes_ = true;
+  const Element* part = file_.child(at_, "elastic");
+  if (part == nullptr) {
+    file_.xml.fault(at_, "the material has no <elastic>", "Give its elastic part.");
+    return false;
+  }
+  const std::optional<Mat3> outer = axes(at_);
+  const std::string kind = file_.type(*part);
+  const bool uncoupled = type == "uncoupled viscoelastic";
+  // The pressure is that of the outer material, whose standard model is another one.
+  if (uncoupled && !has_pressure_model(at_, 0)) return false;
+  if (uncoupled && kind == "holzapfel-gasser-ogden") {
+    file_.refuse(*part, "Holzapfel-Gasser-Ogden in an uncoupled viscoelastic material is not read",
+                 "Use a Mooney-Rivlin material with fibres: there the pressure is another one.");
+    return false;
+  }
+  if (!outer || !put_law(*part, kind, *outer)) return false;
+  if (uncoupled_ != uncoupled) {
+    file_.refuse(*part,
+                 uncoupled
+                     ? "the elastic part of an uncoupled viscoelastic material is not uncoupled"
+                     : "the elastic part of a viscoelastic material is uncoupled: its "
+                       "pressure would relax, too",
+                 uncoupled ? "Use a viscoelastic material." : "Use an uncoupled viscoelastic one.");
+    return false;
+  }
+  bulk_ += uncoupled ? file_.number(at_, "k").value_or(0.0) : 0.0;
+  static_cast<void>(file_.number(*part, "density"));  // not used by FEBio either
+  std::vector<SourceNode> terms;
+  for (int k = 1; k <= kTerms; ++k) {
+    const double g = file_.number(at_, format("g{}", k).c_str()).value_or(0.0);
+    const double t = file_.number(at_, format("t{}", k).c_str()).value_or(1.0);
+    if (g == 0.0) continue;
+    SourceNode& term = terms.emplace_back(make_.map());
+    make_.put(term, "modulus_ratio", make_.number(g));
+    make_.put(term, "time", make_.number(t));
+  }
+  if (terms.empty()) {
+    file_.xml.fault(at_, "the material has no terms", "Give <g1> and <t1>.");
+    return false;
+  }
+  make_.put(node_, "relaxation", make_.list(std::move(terms)));
+  if (const double rest = file_.number(at_, "g0").value_or(1.0); rest != 1.0)
+    make_.put(node_, "long_term_ratio", make_.number(rest));
+  return true;
+}
+
+bool FebLaw::put_mixture(const Element& e, const std::string& type, const Mat3& around) {
   sum_of_coupled_ = type == "solid mixture";
-  const std::optional<Mat3> outer = axes(e);
-  if (!outer) return false;
+  const std::optional<Mat3> turned = axes(e);
+  if (!turned) return false;
+  const Mat3 outer = around * *turned;
   if (!has_pressure_model(e, 0)) return false;
   std::vector<SourceNode> matrices;
   double density = 0.0;
@@ -123,7 +184,7 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
     const std::string kind = file_.type(*part);
     density += file_.number(*part, "density").value_or(1.0);
     if (is_fibre(kind)) {
-      if (!put_fibre(*part, kind, *outer)) return false;
+      if (!put_fibre(*part, kind, outer)) return false;
       continue;
     }
     if (kind.find("fiber") != std::string::npos) {
@@ -138,7 +199,7 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
       return false;
     }
     node_ = make_.map();
-    if (!put_matrix(*part, kind, *outer)) return false;
+    if (!put_matrix(*part, kind, outer)) return false;
     matrices.push_back(std::move(node_));
   }
   if (matrices.empty()) {
@@ -163,7 +224,7 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
     }
   // The bulk modulus of the mixture, if it has one, stands for those of its parts.
   if (const double own = file_.number(e, "k").value_or(0.0); own != 0.0 && uncoupled_) bulk_ = own;
-  if (sum_of_coupled_) {
+  if (sum_of_coupled_ && !relaxes_) {
     // FEBio's rule, also where the mixture has a density.
     make_.put(node_, "density", make_.number(density));
     if (file_.number(e, "density").value_or(density) != density)
@@ -175,15 +236,13 @@ bool FebLaw::put_mixture(const Element& e, const std::string& type) {
 }
 
 std::optional<SourceNode> FebLaw::read(const std::string& type) {
-  const bool mixture = type == "solid mixture" || type == "uncoupled solid mixture";
-  if (!(mixture ? put_mixture(at_, type) : put_matrix(at_, type, Mat3::Identity())))
-    return std::nullopt;
+  if (!put_law(at_, type, Mat3::Identity())) return std::nullopt;
   if (!local_.empty()) own_ = axes(at_).value_or(Mat3::Identity());
   for (Vec3& direction : local_) direction = own_.transpose() * direction;
   if (uncoupled_) make_.put(node_, "bulk_modulus", make_.number(bulk_));
   if (fibres_.size() == 1) make_.put(node_, "fibre", std::move(fibres_[0]));
   if (fibres_.size() > 1) make_.put(node_, "fibre", make_.list(std::move(fibres_)));
-  if (!sum_of_coupled_)
+  if (!sum_of_coupled_ || relaxes_)
     make_.put(node_, "density", make_.number(file_.number(at_, "density").value_or(1.0)));
   return std::move(node_);
 }

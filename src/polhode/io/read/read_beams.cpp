@@ -71,29 +71,28 @@ class SectionReader {
     if (!index) return std::nullopt;
     const MaterialSpec& spec = context_.model.materials[static_cast<std::size_t>(*index)];
     if (!context_.material_is_sound[static_cast<std::size_t>(*index)]) return std::nullopt;
+    const auto refuse = [&](const std::string& what, const char* hint) {
+      section_.fault("material", what, hint);
+      return std::nullopt;
+    };
     const auto is_isotropic = [&](const std::vector<std::string>& names) {
       return std::all_of(names.begin(), names.end(),
                          [&](const auto& name) { return spec.parameters.contains(name); });
     };
     const auto sets = solids::isotropic_alternatives();
-    if (!spec.fibres.empty() || std::none_of(sets.begin(), sets.end(), is_isotropic)) {
-      section_.fault("material",
-                     format("{} is {}, without the two moduli of an isotropic material",
-                            quote(spec.name), spec.type),
-                     "Name a material of type elastic.");
-      return std::nullopt;
-    }
+    if (!spec.fibres.empty() || std::none_of(sets.begin(), sets.end(), is_isotropic))
+      return refuse(format("{} is {}, without the two moduli of an isotropic material",
+                           quote(spec.name), spec.type),
+                    "Name a material of type elastic.");
     const auto [lame, shear] = solids::isotropic_moduli(spec.parameters);
-    if (!(spec.density > 0.0)) {
-      section_.fault("material", format("{} has no density", quote(spec.name)),
-                     "Give the material a density.");
-      return std::nullopt;
-    }
-    if (spec.viscosity.any() && !(spec.viscosity.relaxation_time > 0.0)) {
-      section_.fault("material", format("the viscosity of {} is given by moduli", quote(spec.name)),
-                     "Give the viscosity of a beam's material by its relaxation_time.");
-      return std::nullopt;
-    }
+    if (!(spec.density > 0.0))
+      return refuse(format("{} has no density", quote(spec.name)), "Give the material a density.");
+    if (spec.viscosity.any() && !(spec.viscosity.relaxation_time > 0.0))
+      return refuse(format("the viscosity of {} is given by moduli", quote(spec.name)),
+                    "Give the viscosity of a beam's material by its relaxation_time.");
+    if (!spec.relaxation.empty())
+      return refuse(format("the stress of {} relaxes", quote(spec.name)),
+                    "Give a beam a material without 'relaxation', or use a solid.");
     return BeamMaterial{shear * (3.0 * lame + 2.0 * shear) / (lame + shear),
                         0.5 * lame / (lame + shear), spec.density, spec.viscosity.relaxation_time};
   }

@@ -26,10 +26,13 @@ class MaterialReader {
       if (!value) continue;
       if (field.name == "density")
         material_.density = *value;
+      else if (field.name == "long_term_ratio")
+        material_.long_term_ratio = *value;
       else
         material_.parameters[field.name] = *value;
     }
     if (const SourceNode* value = section_.find("viscosity")) read_viscosity(*value);
+    if (const SourceNode* value = section_.find("relaxation")) read_relaxation(*value);
     if (const SourceNode* value = section_.find("fibre")) read_fibres(*value);
     if (context_.diagnostics.size() == before) check();
   }
@@ -46,6 +49,24 @@ class MaterialReader {
     if (!section.has("relaxation_time") && section.misses("shear"))
       section.fault("'shear' is missing", "Give relaxation_time, or shear and lame.");
     section.read_into(v);
+  }
+
+  void read_relaxation(const SourceNode& node) {
+    const std::string path = section_.path("relaxation");
+    if (!node.is_list()) {
+      read_term(node, path);
+      return;
+    }
+    if (node.children.empty())
+      context_.fault(node, path, "is an empty list", "Leave it out, or list the terms.");
+    for (std::size_t k = 0; k < node.children.size(); ++k)
+      read_term(node.children[k], format("{}.{}", path, k));
+  }
+
+  void read_term(const SourceNode& node, const std::string& path) {
+    Section section(context_, node, context_.tree.place_of(node), path, relaxation_fields());
+    if (!node.is_map()) return;
+    section.read_into(material_.relaxation.emplace_back());
   }
 
   void read_fibres(const SourceNode& node) {

@@ -202,11 +202,23 @@ void check_model(ReadContext& context, const SourceNode& root) {
   for (const SolidSpec& solid : model.solids) {
     std::vector<std::string> names{solid.material};
     for (const RegionSpec& region : solid.regions) names.push_back(region.material);
-    const auto viscous = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-      const auto material = context.materials.find(name);
-      return material != context.materials.end() &&
-             model.materials[static_cast<std::size_t>(material->second)].viscosity.any();
-    });
+    const auto any_of_them = [&](auto&& holds) {
+      return std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+        const auto material = context.materials.find(name);
+        return material != context.materials.end() &&
+               holds(model.materials[static_cast<std::size_t>(material->second)]);
+      });
+    };
+    if (const auto relaxing =
+            any_of_them([](const MaterialSpec& m) { return !m.relaxation.empty(); });
+        relaxing != names.end()) {
+      context.fault(
+          *root.find("analysis")->find("order"), "analysis.order",
+          format("order {} cannot be combined with the relaxation of {}", order, quote(*relaxing)),
+          "Stress that relaxes has steps of order 2: use order 2.");
+      break;
+    }
+    const auto viscous = any_of_them([](const MaterialSpec& m) { return m.viscosity.any(); });
     if (viscous == names.end()) continue;
     refuse("the viscosity of " + quote(*viscous), "viscosity");
     break;

@@ -154,9 +154,12 @@ class Fingerprint {
   }
   // By hand: not in the order of the table.
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
+  void one(const RelaxationSpec& r) { add_fields(r, relaxation_fields()); }
   void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }
   void one(const MaterialSpec& m) {
     add(m.name, m.type, m.parameters, m.density, m.viscosity, m.fibres);
+    // Absent entries leave the fingerprints of older models unchanged.
+    if (!m.relaxation.empty()) add(m.relaxation, m.long_term_ratio);
   }
   void one(const MeshSpec& m) {
     add(m.type, m.group, m.scale, m.parameters, m.nodes, m.elements, m.sets, m.position,

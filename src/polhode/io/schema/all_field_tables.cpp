@@ -21,6 +21,7 @@ std::vector<const FieldTable*> all_field_tables() {
   for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
   tables.push_back(&viscosity_fields());
+  tables.push_back(&relaxation_fields());
   for (const KindTable& kind : fibre_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : section_tables()) tables.push_back(&kind.table);
   tables.push_back(&beam_fields());

@@ -145,6 +145,7 @@ const FieldTable& shape_fields();
 const FieldTable& mesh_fields();
 const std::vector<KindTable>& material_tables();
 const FieldTable& viscosity_fields();
+const FieldTable& relaxation_fields();
 const std::vector<KindTable>& fibre_tables();
 const std::vector<KindTable>& section_tables();
 const FieldTable& beam_fields();

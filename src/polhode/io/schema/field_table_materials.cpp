@@ -87,6 +87,18 @@ KindTable material_table(const std::string& name, const solids::MaterialKind& ki
                                 .meaning = "Kelvin-Voigt viscosity.",
                                 .standard = "none",
                                 .table = "viscosity"},
+                               {.name = "relaxation",
+                                .kind = kSections,
+                                .meaning = "Terms of the stress that relax: Prony series.",
+                                .standard = "none",
+                                .table = "relaxation",
+                                .since = "0.3"},
+                               {.name = "long_term_ratio",
+                                .kind = kNumber,
+                                .meaning = "Ratio of the stress that stays to the elastic one.",
+                                .standard = "1",
+                                .range = kNotNegative,
+                                .since = "0.3"},
                                {.name = "fibre",
                                 .kind = kSections,
                                 .meaning = "Fibres that carry tension only; several families.",
@@ -133,6 +145,31 @@ const FieldTable& viscosity_fields() {
            .meaning = "Viscous first Lamé constant: stress per rate of volume strain.",
            .standard = "0",
            .member = &ViscositySpec::lame},
+      }};
+  return table;
+}
+
+const FieldTable& relaxation_fields() {
+  static const FieldTable table{
+      "relaxation",
+      "A term of the relaxation series: part of the stress that follows changes of the elastic "
+      "stress at once and then decays.",
+      {
+          {.name = "modulus_ratio",
+           .kind = kNumber,
+           .meaning = "Ratio of this part to the elastic stress, right after a sudden change.",
+           .required = true,
+           .range = kPositive,
+           .member = &RelaxationSpec::modulus_ratio,
+           .since = "0.3"},
+          {.name = "time",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Relaxation time.",
+           .required = true,
+           .range = kPositive,
+           .member = &RelaxationSpec::time,
+           .since = "0.3"},
       }};
   return table;
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <polhode/solids/elements/condensation.hpp>
-#include <polhode/solids/elements/point_kernel.hpp>
+#include <polhode/solids/elements/memory_kernel.hpp>
 
 namespace polhode::solids {
 
@@ -61,6 +61,9 @@ struct Block {
     return points + static_cast<long>(q) * W * kSizes.point_packs();
   }
   [[nodiscard]] P weight(int q) const { return load<P>(point(q)); }
+  [[nodiscard]] PointMemory<P> memory(const ElementData& data, int q) const {
+    return {data, number * W, present, kSizes.points, q};
+  }
   void gradients(int q, P* G) const {
     for (int i = 0; i < 3 * R; ++i) G[i] = load<P>(point(q) + (1 + i) * W);
   }
@@ -205,6 +208,9 @@ struct BlockForces {
       if (data.conserving && alpha_f != 0.5 && alpha_f != 1.0)
         add_shift<P>(data, block.fibres, !kMean, alpha_f - 0.5, m.E_0, m.E_1, S,
                      kTangent ? D : nullptr);
+      if (data.memory_size > 0)
+        add_memory<P>(data, step, block.fibres, block.memory(data, q), m.E_0, m.E_1, S,
+                      kTangent ? D : nullptr);
       P S_geometric[6];
       P F_t[9];
       for (int i = 0; i < 9; ++i) F_t[i] = data.conserving ? F_1[i] : alpha_f * m.F_alpha[i];

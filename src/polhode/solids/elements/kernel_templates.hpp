@@ -111,19 +111,6 @@ double advance_elements(const ElementData& data, const ElementStep& step, const 
   return largest;
 }
 
-/// Energy density of a point, without the volumetric energy if that is averaged.
-template <class P>
-inline P energy_density(const ElementData& data, const double* fibres, bool whole, const P* E) {
-  P W{};
-  data.law_kernel.energy(data.law, whole, numbers(E), numbers(&W));
-  for (int f = 0; f < data.family_count; ++f) {
-    const FibreFamily& family = data.families[f];
-    family.kernel.add_energy(family.law, data.uncoupled, family.dispersion,
-                             fibres + 3 * kWidth<P> * f, numbers(E), numbers(&W));
-  }
-  return W;
-}
-
 /// Mean dilatation minus one at t_{n+1}.
 template <class P, int kKind>
 inline P mean_dilatation(const Block<P, kKind>& block) {
@@ -156,6 +143,18 @@ void element_work(const ElementData& data, const ElementStep& step, double* stor
       displacement_gradient<P, B::R>(block.u_1, G, H);
       green_strain(H, E);
       energy += w * energy_density<P>(data, block.fibres, !kMean, E);
+      if (data.memory_size > 0) {
+        const PointMemory<P> memory = block.memory(data, q);
+        if (step.rate != 0.0) {
+          P H_0[9], E_0[6], loss{};
+          displacement_gradient<P, B::R>(block.u_0, G, H_0);
+          green_strain(H_0, E_0);
+          energy += w * memory_energy_after<P>(data, step, block.fibres, memory, E_0, E, loss);
+          taken += w / step.dt * loss;
+        } else {
+          energy += w * memory_energy<P>(data, step, block.fibres, memory, E);
+        }
+      }
       if (data.viscous) {
         P H_0[9], F[9], F_dot[9], rate[6];
         displacement_gradient<P, B::R>(block.u_0, G, H_0);
@@ -207,6 +206,9 @@ void sample_elements(const ElementData& data, const ElementStep& step, double* s
         const VolumeGradient<P> gradient(StrainPair<P>(E, E), J, J);
         for (int i = 0; i < 6; ++i) S[i] += p * gradient.g[i];
       }
+      if (data.memory_size > 0)
+        add_memory<P>(data, step, block.fibres, block.memory(data, q), E, E, S,
+                      static_cast<P*>(nullptr));
       times_symmetric(F, S, A);
       constexpr int kRow[6] = {0, 1, 2, 0, 1, 2}, kColumn[6] = {0, 1, 2, 1, 2, 0};
       P point[kNodalSize];
@@ -218,6 +220,8 @@ void sample_elements(const ElementData& data, const ElementStep& step, double* s
         sum[6 + k] += w * ((k < 3 ? 1.0 : 0.0) + 2.0 * E[k]);
       }
       point[6] = energy_density<P>(data, block.fibres, !kMean, E) + U;
+      if (data.memory_size > 0)
+        point[6] += memory_energy<P>(data, step, block.fibres, block.memory(data, q), E);
       sum[12] += w * point[6];
       sum[13] += w;
       if (!nodal) continue;
@@ -238,8 +242,26 @@ void sample_elements(const ElementData& data, const ElementStep& step, double* s
 }
 
 template <class P, int kKind>
+void remember_elements(const ElementData& data, const ElementStep& step, double* history) {
+  using B = Block<P, kKind>;
+  for (int n = 0; n < data.blocks; ++n) {
+    const B block(data, step, n, false);
+    for (int q = 0; q < B::kSizes.points; ++q) {
+      P G[3 * B::R], H[9], E_0[6], E_1[6];
+      block.gradients(q, G);
+      displacement_gradient<P, B::R>(block.u_0, G, H);
+      green_strain(H, E_0);
+      displacement_gradient<P, B::R>(block.u_1, G, H);
+      green_strain(H, E_1);
+      remember_point<P>(data, step, block.fibres, block.memory(data, q), E_0, E_1, history);
+    }
+  }
+}
+
+template <class P, int kKind>
 inline constexpr ElementKernel kKernelOf = {evaluate_elements<P, kKind>, advance_elements<P, kKind>,
-                                            element_work<P, kKind>, sample_elements<P, kKind>};
+                                            element_work<P, kKind>, sample_elements<P, kKind>,
+                                            remember_elements<P, kKind>};
 
 template <class P>
 struct KernelTable {

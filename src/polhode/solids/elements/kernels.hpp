@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
+#include <polhode/solids/elements/memory.hpp>
 #include <polhode/solids/materials/kernels.hpp>
 
 namespace polhode::solids {
@@ -35,6 +37,8 @@ struct ElementData {
   bool conserving = true;  ///< Discrete gradient; else the stress of the averaged F.
   bool viscous = false;
   double viscous_lame = 0.0, viscous_shear = 0.0;  ///< [Pa s]
+  int memory_size = 0;              ///< Numbers of history at a point; zero: no stress relaxes.
+  std::ptrdiff_t first_memory = 0;  ///< In the history, by element and point.
 };
 
 /// Input and output of one evaluation.
@@ -44,6 +48,7 @@ struct ElementStep {
   double rate = 0.0;  ///< D v_{n+1}/D x_{n+1} [1/s].
   double dt = 0.0;
   bool mixed_point = false;
+  MemoryWeights memory;
   const double* history = nullptr;
   /// Null at an instant: internal unknowns are then those of the history.
   double* scratch = nullptr;
@@ -65,10 +70,12 @@ struct ElementKernel {
   void (*evaluate)(const ElementData&, ElementStep&);
   /// Updates internal unknowns. @returns the largest change of one [m].
   double (*advance)(const ElementData&, const ElementStep&, const double* du);
-  /// Energy at t_{n+1}, and power dissipated by viscosity.
+  /// Energy at t_{n+1}, and power dissipated by viscosity and relaxation.
   void (*work)(const ElementData&, const ElementStep&, double* stored, double* power);
   /// @param nodal  n × kNodalSize an element, or null.
   void (*sample)(const ElementData&, const ElementStep&, double* samples, double* nodal);
+  /// Writes the memory of stresses at t_{n+1}; before the other history is updated.
+  void (*remember)(const ElementData&, const ElementStep&, double* history);
 };
 
 /// Sizes used by kernels and the group: rows of gradients at a point (nodes, then enhanced modes),

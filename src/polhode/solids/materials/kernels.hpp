@@ -5,6 +5,9 @@
 
 namespace polhode::solids {
 
+/// Largest number of terms of a relaxation series.
+inline constexpr int kMostRelaxations = 12;
+
 /// Functions of a law for several elements in SIMD lanes. Numbers are packs of that many doubles,
 /// aligned to their size; symmetric tensors are six packs (11 22 33 12 23 31), D is 36 row by row
 /// and acts on strains with doubled shear.

@@ -19,6 +19,12 @@ struct FibreDescription {
   ParameterValues values;  ///< SI, by the kind's names; defaults for missing ones.
 };
 
+/// A term g exp(−t/τ) of the relaxation series of a material. @eq{solid-relaxation}
+struct Relaxation {
+  double ratio = 0.0;  ///< g [-].
+  double time = 0.0;   ///< τ [s].
+};
+
 /// Description of a material by the user.
 struct MaterialDescription {
   std::string kind;        ///< A name of material_kinds().
@@ -29,6 +35,8 @@ struct MaterialDescription {
   double relaxation_time = 0.0;
   /// ... or separate moduli, S_v = λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
   LinearModuli viscous = {};
+  std::vector<Relaxation> relaxation = {};  ///< Terms of the series; empty: no memory.
+  double long_term_ratio = 1.0;             ///< g₀, constant term of the series [-].
 };
 
 /// A family of fibres: its law with its constants.
@@ -47,7 +55,10 @@ class Material {
   [[nodiscard]] bool viscous() const { return viscous_.lame != 0.0 || viscous_.shear != 0.0; }
   [[nodiscard]] LinearModuli linear() const { return linear_; }           ///< At rest [Pa].
   [[nodiscard]] LinearModuli viscous_moduli() const { return viscous_; }  ///< [Pa s]
-  [[nodiscard]] double bulk_modulus() const {                             ///< At rest [Pa].
+  /// Terms of the relaxation series, of the isochoric part if the material is uncoupled.
+  [[nodiscard]] const std::vector<Relaxation>& relaxation() const { return relaxation_; }
+  [[nodiscard]] double long_term_ratio() const { return long_term_ratio_; }  ///< g₀ [-].
+  [[nodiscard]] double bulk_modulus() const {                                ///< At rest [Pa].
     return linear_.lame + 2.0 / 3.0 * linear_.shear;
   }
 
@@ -63,6 +74,8 @@ class Material {
   LinearModuli linear_, viscous_;
   alignas(16) std::array<std::byte, 128> law_{};
   std::vector<Fibre> fibres_;
+  std::vector<Relaxation> relaxation_;
+  double long_term_ratio_ = 1.0;
 };
 
 /// Discrete stress between two strains, with its derivative by the second.

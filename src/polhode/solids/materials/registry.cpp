@@ -70,6 +70,9 @@ struct MaterialMaker {
     });
     add_fibres(*m);
     m->viscous_ = viscous(*m);
+    check_relaxation();
+    m->relaxation_ = description.relaxation;
+    m->long_term_ratio_ = description.long_term_ratio;
     return m;
   }
 
@@ -91,6 +94,31 @@ struct MaterialMaker {
         });
       });
       m.fibres_.push_back(fibre);
+    }
+  }
+
+  void check_relaxation() const {
+    const std::vector<Relaxation>& terms = description.relaxation;
+    const double rest = description.long_term_ratio;
+    if (terms.empty() && rest != 1.0)
+      throw InputError(where, "'long_term_ratio' is given without 'relaxation'",
+                       "Give the terms that relax, or leave it out");
+    if (!std::isfinite(rest) || rest < 0.0)
+      throw InputError(where, format("'long_term_ratio' is {:g}", rest),
+                       "Give a ratio that is not negative");
+    if (terms.size() > static_cast<std::size_t>(kMostRelaxations))
+      throw InputError(
+          format("{}.relaxation", where),
+          format("there are {} terms, and at most {} are possible", terms.size(), kMostRelaxations),
+          "Give fewer terms: one for each decade of time is usually enough");
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      const std::string place = format("{}.relaxation.{}", where, i);
+      const auto check = [&](const char* name, double value) {
+        if (!std::isfinite(value) || value <= 0.0)
+          throw InputError(place, format("'{}' is {:g}", name, value), "Give a value above zero");
+      };
+      check("modulus_ratio", terms[i].ratio);
+      check("time", terms[i].time);
     }
   }
 
