@@ -41,15 +41,16 @@ class FebRelaxing : public FebFixture {
   }
 };
 
-const std::string kNeoHookean =
+const std::string kElasticPart =
     "<elastic type='neo-Hookean'><density>5</density><E>1e4</E><v>0.3</v></elastic>";
-const std::string kTerms = "<t1>0.25</t1><g1>0.8</g1><g2>0</g2><t3>4</t3><g3>0.5</g3>";
+const std::string kPronyTerms = "<t1>0.25</t1><g1>0.8</g1><g2>0</g2><t3>4</t3><g3>0.5</g3>";
 
 // Along the stretch λ, sides held: S = μ (1 − λ⁻²) + Λ ln λ λ⁻² of FEBio's neo-Hookean material.
 TEST_F(FebRelaxing, HasTheStressesOfItsRecursion) {
   for (const double rest : {1.0, 0.4}) {
-    const std::string inside = "<density>1</density><g0>" + format("{}", rest) + "</g0>" + kTerms;
-    Simulation s(read(cube("viscoelastic", inside + kNeoHookean)));
+    const std::string inside =
+        "<density>1</density><g0>" + format("{}", rest) + "</g0>" + kPronyTerms;
+    Simulation s(read(cube("viscoelastic", inside + kElasticPart)));
     const double mu = 1e4 / 2.6, lame = 1e4 * 0.3 / (1.3 * 0.4);
     const auto elastic = [&](double l) {
       return mu * (1.0 - 1.0 / (l * l)) + lame * std::log(l) / (l * l);
@@ -81,7 +82,8 @@ TEST_F(FebRelaxing, HasTheStressesOfItsRecursion) {
 }
 
 TEST_F(FebRelaxing, BecomesAMaterialWithTheseTerms) {
-  const Model coupled = read(cube("viscoelastic", "<density>900</density>" + kTerms + kNeoHookean));
+  const Model coupled =
+      read(cube("viscoelastic", "<density>900</density>" + kPronyTerms + kElasticPart));
   ASSERT_EQ(coupled.materials.size(), 1u);
   const MaterialSpec& m = coupled.materials[0];
   EXPECT_EQ(m.type, "neo_hookean");
@@ -109,7 +111,7 @@ TEST_F(FebRelaxing, BecomesAMaterialWithTheseTerms) {
   EXPECT_EQ(uncoupled.solids[0].element, "hex8_q1p0");
   // The density of a mixture within is that of the outer material.
   const Model mixture = read(cube(
-      "viscoelastic", "<density>7</density>" + kTerms +
+      "viscoelastic", "<density>7</density>" + kPronyTerms +
                           "<elastic type='solid mixture'><solid type='neo-Hookean'><density>900"
                           "</density><E>1</E><v>0.3</v></solid><solid type='fiber-exp-pow'>"
                           "<ksi>1</ksi><alpha>0</alpha><beta>3</beta></solid></elastic>"));
@@ -122,18 +124,20 @@ TEST_F(FebRelaxing, WhatCannotBeReadIsNamed) {
     return fault(cube(type, inside));
   };
   const std::string rubber = "<elastic type='Mooney-Rivlin'><c1>1</c1><k>9</k></elastic>";
-  EXPECT_THAT(said("viscoelastic", kTerms), HasSubstr("the material has no <elastic>"));
-  EXPECT_THAT(said("viscoelastic", kNeoHookean), HasSubstr("the material has no terms"));
-  EXPECT_THAT(said("viscoelastic", kTerms + rubber), HasSubstr("its pressure would relax, too"));
-  EXPECT_THAT(said("uncoupled viscoelastic", kTerms + kNeoHookean),
+  EXPECT_THAT(said("viscoelastic", kPronyTerms), HasSubstr("the material has no <elastic>"));
+  EXPECT_THAT(said("viscoelastic", kElasticPart), HasSubstr("the material has no terms"));
+  EXPECT_THAT(said("viscoelastic", kPronyTerms + rubber),
+              HasSubstr("its pressure would relax, too"));
+  EXPECT_THAT(said("uncoupled viscoelastic", kPronyTerms + kElasticPart),
               HasSubstr("elastic part of an uncoupled viscoelastic material is not uncoupled"));
-  EXPECT_THAT(said("uncoupled viscoelastic",
-                   kTerms + "<elastic type='Holzapfel-Gasser-Ogden'><c>1</c><k>9</k></elastic>"),
-              HasSubstr("in an uncoupled viscoelastic material is not read"));
-  EXPECT_THAT(said("viscoelastic",
-                   kTerms + "<elastic type='viscoelastic'>" + kTerms + kNeoHookean + "</elastic>"),
+  EXPECT_THAT(
+      said("uncoupled viscoelastic",
+           kPronyTerms + "<elastic type='Holzapfel-Gasser-Ogden'><c>1</c><k>9</k></elastic>"),
+      HasSubstr("in an uncoupled viscoelastic material is not read"));
+  EXPECT_THAT(said("viscoelastic", kPronyTerms + "<elastic type='viscoelastic'>" + kPronyTerms +
+                                       kElasticPart + "</elastic>"),
               HasSubstr("a viscoelastic material within another one is not read"));
-  EXPECT_THAT(said("viscoelastic", kTerms + "<elastic type='wood'/>"),
+  EXPECT_THAT(said("viscoelastic", kPronyTerms + "<elastic type='wood'/>"),
               HasSubstr("of type 'wood' is not read"));
 }
 
