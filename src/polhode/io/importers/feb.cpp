@@ -27,6 +27,7 @@ class FebReader {
     if (!check_version(root)) return result;
     model_.joints = make.map();
     model_.loads = make.map();
+    refuse_options();
     if (const Element* module = file_.child(root, "Module")) read_module(*module);
     if (!read_feb_steps(model_)) return result;
     model_.curves.until = model_.duration;
@@ -39,6 +40,7 @@ class FebReader {
     model_.mesh = read_feb_mesh(file_, file_.child(root, "Mesh"), file_.child(root, "MeshDomains"));
     if (const Element* materials = file_.child(root, "Material"))
       read_feb_materials(model_, *materials);
+    check_feb_domains(model_, file_.child(root, "Material"));
     model_.solids.assemble();
     each("MeshData", In::file, [&](const Element& e) { model_.solids.read_mesh_data(e); });
     each("Boundary", In::file, [&](const Element& e) { model_.solids.read_boundary(e); });
@@ -61,9 +63,12 @@ class FebReader {
     write_feb_steps(model_, result);
     write_feb_control(model_, std::move(probes), result);
     file_.ignored.add_unread();
-    if (model_.bodies.empty() && model_.solids.empty())
+    // Otherwise an error, or a note on what was left out, is about them.
+    const Element* materials = file_.child(root, "Material");
+    const bool given = materials != nullptr && materials->FirstChildElement("material") != nullptr;
+    if (model_.bodies.empty() && model_.solids.empty() && (!given || !file_.has_faults()))
       file_.xml.fault(root, "the file has no rigid body and no solid",
-                      "Add a material and a mesh.");
+                      given ? "All of them were left out." : "Add a material and a mesh.");
     return result;
   }
 
@@ -80,6 +85,18 @@ class FebReader {
       file_.xml.fault(root, format("the version {} of FEBio's format is not read", quote(version)),
                       "Export it as 4.0; FEBio Studio converts older files.");
     return false;
+  }
+
+  /// Options of an import that have no meaning for an FEBio file.
+  void refuse_options() {
+    const ImportOptions& options = file_.options;
+    const Element& root = file_.xml.root();
+    if (!options.start.empty())
+      file_.xml.fault(root, "an FEBio file starts where it is, and import.start is given",
+                      "Leave it out.");
+    if (options.base != "fixed")
+      file_.xml.fault(root, "an FEBio file says itself which bodies move freely",
+                      "Leave import.base out.");
   }
 
   void read_module(const Element& e) {

@@ -53,6 +53,31 @@ std::map<int, int> twins_of(const std::vector<Vec3>& X, const std::set<int>& a,
   return twins;
 }
 
+/// Reads what a contact has besides friction: what changes the forces is refused, what belongs to
+/// FEBio's penalty and search is not needed.
+void read_rest_of_contact(FebFile& file, const Element& e) {
+  for (const char* tag :
+       {"max_traction", "offset", "node_reloc", "shell_bottom_primary", "shell_bottom_secondary"})
+    if (file.number(e, tag).value_or(0.0) != 0.0)
+      file.refuse(*file.child(e, tag), format("<{}> of contact is not read", tag), "Leave it out.");
+  if (file.boolean(e, "tension", false))
+    file.refuse(*file.child(e, "tension"), "contact with tension is not read",
+                "Leave it out, or use a tie.");
+  file.skip_all(e, {"laugon",         "tolerance",
+                    "gaptol",         "penalty",
+                    "auto_penalty",   "update_penalty",
+                    "two_pass",       "search_tol",
+                    "search_radius",  "symmetric_stiffness",
+                    "seg_up",         "snap_tol",
+                    "minaug",         "maxaug",
+                    "smooth_aug",     "flip_primary",
+                    "flip_secondary", "knmult",
+                    "ktmult",         "edge_penalty",
+                    "fric_penalty",   "fric_tol",
+                    "sf_penalty",     "max_augmentations",
+                    "smooth"});
+}
+
 /// Names as a list of a model file.
 SourceNode name_nodes(const NodeBuilder& make, const std::set<std::string>& names) {
   SourceNode list = make.list();
@@ -169,7 +194,7 @@ void FebSolids::read_contact(const Element& section) {
       continue;
     }
     const double friction = file.number(*e, "fric_coeff").value_or(0.0);
-    file.xml.skip(*e);
+    read_rest_of_contact(file, *e);
     const auto pair = model_.mesh.surface_pairs.find(pair_name);
     if (pair == model_.mesh.surface_pairs.end()) {
       if (!pair_name.empty())

@@ -87,17 +87,50 @@ Asked asked_by(FebModel& model, const Element& section) {
                           "must points at different intervals are no output times: steps end "
                           "at kinks of the loads in any case");
     }
-    file.xml.skip(*stepper);
+    file.ignored.attributes(*stepper, {"type"});
+    file.skip_all(*stepper,
+                  {"dtmin", "max_retries", "opt_iter", "aggressiveness", "cutback", "dtforce"});
     if (model.dynamic)
       file.approximated(
           *stepper, "the time stepper becomes automatic steps by their error, of at most dtmax");
   }
   if (const Element* solver = file.child(section, "solver")) {
     asked.radius = spectral_radius(file, *solver);
-    file.xml.skip(*solver);
+    file.ignored.attributes(*solver, {"type"});
+    file.skip_all(*solver, {"symmetric_stiffness",
+                            "equation_scheme",
+                            "equation_order",
+                            "optimize_bw",
+                            "lstol",
+                            "lsmin",
+                            "lsiter",
+                            "ls_check_jacobians",
+                            "max_refs",
+                            "check_zero_diagonal",
+                            "zero_diagonal_tol",
+                            "force_partition",
+                            "reform_each_time_step",
+                            "reform_augment",
+                            "diverge_reform",
+                            "min_residual",
+                            "max_residual",
+                            "dtol",
+                            "etol",
+                            "rtol",
+                            "logSolve",
+                            "arc_length",
+                            "arc_length_scale",
+                            "qn_method",
+                            "linear_solver",
+                            "use_lumped_mass",
+                            "mass_lumping",
+                            "print_level"});
     file.ignored.add(*solver, "<solver> with its tolerances", "is FEBio's");
   }
-  for (const Element* e : file.children(section)) file.xml.skip(*e);
+  file.skip_all(section,
+                {"plot_level", "plot_range", "plot_stride", "plot_zero_state", "output_level",
+                 "output_stride", "adaptor_re_solve", "print_level", "optimize_bw", "restart",
+                 "integration", "symmetric_stiffness", "analysis", "time_steps", "step_size"});
   return asked;
 }
 

@@ -116,6 +116,7 @@ std::optional<std::vector<double>> FebFile::numbers(const Element& e, std::size_
 std::optional<double> FebFile::number(const Element& parent, const char* tag) {
   const Element* e = child(parent, tag);
   if (e == nullptr) return std::nullopt;
+  refuse_controller(*e);
   const auto list = numbers(*e, 1, 1);
   return list ? std::optional((*list)[0]) : std::nullopt;
 }
@@ -123,6 +124,7 @@ std::optional<double> FebFile::number(const Element& parent, const char* tag) {
 std::optional<Vec3> FebFile::vector(const Element& parent, const char* tag) {
   const Element* e = child(parent, tag);
   if (e == nullptr) return std::nullopt;
+  refuse_controller(*e);
   const auto list = numbers(*e, 3, 3);
   return list ? std::optional(Vec3((*list)[0], (*list)[1], (*list)[2])) : std::nullopt;
 }
@@ -144,6 +146,17 @@ bool FebFile::boolean(const Element& parent, const char* tag, bool standard) {
   if (word == "0" || word == "false") return false;
   xml.fault(*e, format("<{}> is {}, not 0 or 1", tag, quote(word)), "Write 0 or 1.");
   return standard;
+}
+
+void FebFile::skip_all(const Element& parent, std::initializer_list<const char*> tags) {
+  for (const char* tag : tags)
+    for (const Element* e : xml.children(parent, tag)) xml.skip(*e);
+}
+
+void FebFile::refuse_controller(const Element& e) {
+  if (const auto number = controller(e))
+    refuse(e, format("<{}> changes by the load controller {}", e.Name(), *number),
+           "Give a constant.");
 }
 
 std::optional<int> FebFile::controller(const Element& e) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -36,6 +37,9 @@ class FebFile {
   IgnoredTags ignored;
   const ImportOptions& options;
 
+  /// Whether there was an error so far.
+  [[nodiscard]] bool has_faults() const { return xml.has_faults(); }
+
   /// Error about a part that a model cannot represent, or a note where partial imports are allowed.
   /// The tag counts as read.
   void refuse(const Element& at, const std::string& what, const std::string& hint);
@@ -52,7 +56,10 @@ class FebFile {
   std::string type(const Element& e);
   /// From `least` to `most` numbers in the text of a tag; nothing after an error.
   std::optional<std::vector<double>> numbers(const Element& e, std::size_t least, std::size_t most);
-  /// Number of a child; nothing if there is none, or after an error.
+  /// Marks child tags as read, without a note.
+  void skip_all(const Element& parent, std::initializer_list<const char*> tags);
+  /// Number of a child; nothing if there is none, or after an error. One that changes by a load
+  /// controller is refused.
   std::optional<double> number(const Element& parent, const char* tag);
   std::optional<Vec3> vector(const Element& parent, const char* tag);
   /// Direction of a child, of length 1; the standard one if there is none, or after an error.
@@ -66,6 +73,8 @@ class FebFile {
   std::vector<std::int64_t> integers(const Element& e);
   /// Whole number in an attribute that must be there; nothing after an error.
   std::optional<std::int64_t> id(const Element& e, const char* key = "id");
+  /// Refuses a tag that has a load controller.
+  void refuse_controller(const Element& e);
   /// Load controller of a tag.
   std::optional<int> controller(const Element& e);
 

@@ -84,6 +84,12 @@ class MeshReader {
         file_.ignored.attributes(*e, {"elem_type"});
         const auto part = std::find_if(mesh_.parts.begin(), mesh_.parts.end(),
                                        [&](const FebPart& p) { return p.name == name; });
+        if (part != mesh_.parts.end()) {
+          if (part->domain != nullptr)
+            file_.xml.fault(*e, format("the elements {} are in two domains", quote(name)),
+                            "Leave one of them out.");
+          part->domain = e;
+        }
         if (std::string_view(tag) == "ShellDomain") {
           file_.refuse(*e, format("the domain {} has shells, which are not there", quote(name)),
                        "Mesh the part with solid elements, or make it rigid.");

@@ -20,11 +20,12 @@ struct FebPart {
   std::string
       shape;  ///< Of a model file, in whose order the nodes are; "" if it has no such shape.
   const XmlFile::Element* at = nullptr;
-  int size = 0;                   ///< Nodes of an element.
-  std::vector<int> nodes;         ///< Places in FebMesh::nodes, element by element.
-  std::vector<std::int64_t> ids;  ///< Of the elements.
-  std::string material;           ///< Of its domain; "" without one.
-  double area = 0.0;              ///< Of the cross section of trusses [m²].
+  const XmlFile::Element* domain = nullptr;  ///< That gives its material; null without one.
+  int size = 0;                              ///< Nodes of an element.
+  std::vector<int> nodes;                    ///< Places in FebMesh::nodes, element by element.
+  std::vector<std::int64_t> ids;             ///< Of the elements.
+  std::string material;                      ///< Of its domain; "" without one.
+  double area = 0.0;                         ///< Of the cross section of trusses [m²].
 
   [[nodiscard]] bool is_solid() const;
 };

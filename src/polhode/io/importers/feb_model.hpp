@@ -113,4 +113,8 @@ void write_feb_control(FebModel& model, SourceNode probes, SourceNode& root);
 /// Events that switch what acts in one step of several.
 void write_feb_steps(FebModel& model, SourceNode& root);
 
+/// Errors about elements without a domain and domains whose material does not exist.
+/// @param materials  The section of materials; may be null.
+void check_feb_domains(FebModel& model, const XmlFile::Element* materials);
+
 }  // namespace polhode::io

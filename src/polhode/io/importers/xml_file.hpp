@@ -38,6 +38,7 @@ class XmlFile {
   [[nodiscard]] int line(const Element& element) const;
   [[nodiscard]] SourceLocation place(int line) const { return place(*source_, line); }
   void fault(const Element& element, std::string what, std::string hint);
+  [[nodiscard]] bool has_faults() const { return !diagnostics_.empty(); }
 
   /// Replaces each <include file="..."/> by what the root tag of that file contains.
   /// @param folder  Folder to which the names of included files are relative.
