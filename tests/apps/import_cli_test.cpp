@@ -113,6 +113,27 @@ TEST_F(Robot, AModelOfFebioIsOneTooAndItsStaticsIsAHistory) {
   EXPECT_GE(halves, 20);
 }
 
+// A block of 2 x 1 x 1 m and 1000 kg/m^3.
+TEST_F(Robot, TotalsOfTissueAreThoseOfItsSolids) {
+  write("tissue.feb", R"(<febio_spec version="4.0">
+<Control><analysis>DYNAMIC</analysis><time_steps>10</time_steps><step_size>0.1</step_size></Control>
+<Material><material id="1" name="m" type="neo-Hookean"><density>1000</density><E>1e6</E><v>0.3</v></material></Material>
+<Mesh><Nodes><node id="1">0,0,0</node><node id="2">2,0,0</node><node id="3">2,1,0</node><node id="4">0,1,0</node>
+<node id="5">0,0,1</node><node id="6">2,0,1</node><node id="7">2,1,1</node><node id="8">0,1,1</node></Nodes>
+<Elements type="hex8" name="part"><elem id="1">1,2,3,4,5,6,7,8</elem></Elements></Mesh>
+<MeshDomains><SolidDomain name="part" mat="m"/></MeshDomains>
+</febio_spec>
+)");
+  const auto report = run({"import", "tissue.feb", "--json"});
+  ASSERT_EQ(report.code, 0) << report.err;
+  EXPECT_EQ(value(report.out, "elements"), "1");
+  EXPECT_EQ(value(report.out, "materials"), "1");
+  EXPECT_NEAR(std::stod(value(report.out, "mass")), 2000.0, 1e-9);
+  const std::string text = run({"import", "tissue.feb"}).out;
+  EXPECT_THAT(text, HasSubstr("1 elements, 8 nodes"));
+  EXPECT_THAT(text, HasSubstr("333.333333 833.333333 833.333333"));
+}
+
 TEST_F(Robot, FaultsAreThoseOfItsLines) {
   write("bad.urdf",
         "<robot name='r'>\n  <link name='a'/>\n  <joint name='j' type='fixed'>\n    <parent "

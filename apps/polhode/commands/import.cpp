@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <polhode/compile/solid_mass.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -36,9 +37,35 @@ nlohmann::ordered_json notes_json(const io::ImportReport& report, io::ImportNote
 
 nlohmann::ordered_json three_json(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
+/// Mass, its centre and inertia of all bodies and solids at the start.
+geometry::MassProperties total_mass(const Simulation& simulation) {
+  std::vector<geometry::MassProperties> parts;
+  if (const geometry::MassProperties bodies = whole_mass(simulation.model()); bodies.mass > 0.0)
+    parts.push_back(bodies);
+  for (const SolidMap& solid : simulation.solids())
+    if (solid.mass > 0.0) parts.push_back(solid_mass(solid));
+  return parts.empty() ? geometry::MassProperties{} : geometry::composed(parts);
+}
+
+/// Sizes of the deformable part of a model.
+struct SolidCounts {
+  std::size_t elements = 0, nodes = 0, interfaces = 0;
+};
+SolidCounts solid_counts(const Simulation& simulation) {
+  SolidCounts counts;
+  for (const SolidMap& solid : simulation.solids()) {
+    counts.elements += static_cast<std::size_t>(solid.plan.mesh.element_count());
+    counts.nodes += static_cast<std::size_t>(solid.node_count());
+  }
+  for (const SolidSpec& solid : simulation.model().solids)
+    counts.interfaces += solid.bonded.size() + solid.prescribed.size();
+  return counts;
+}
+
 nlohmann::ordered_json report_json(const io::ImportReport& report, const Simulation& simulation,
                                    const RankReport& rank) {
-  const geometry::MassProperties whole = whole_mass(simulation.model());
+  const geometry::MassProperties whole = total_mass(simulation);
+  const SolidCounts solids = solid_counts(simulation);
   const Mat3& J = whole.inertia;
   using Kind = io::ImportNote::Kind;
   return {{"format", report.format},
@@ -48,6 +75,12 @@ nlohmann::ordered_json report_json(const io::ImportReport& report, const Simulat
           {"joints", simulation.model().joints.size()},
           {"loops", loop_count(simulation.model())},
           {"freedoms", rank.mobility},
+          {"solids", simulation.solids().size()},
+          {"elements", solids.elements},
+          {"nodes", solids.nodes},
+          {"materials", simulation.model().materials.size()},
+          {"interfaces", solids.interfaces},
+          {"contact_pairs", simulation.model().contacts.pairs.size()},
           {"mass", whole.mass},
           {"center_of_mass", three_json(whole.com)},
           {"inertia", {three_json(J.row(0)), three_json(J.row(1)), three_json(J.row(2))}},
@@ -65,24 +98,36 @@ std::string three_numbers(const Vec3& x) {
 
 std::string report_text(const io::ImportReport& report, const Simulation& simulation,
                         const RankReport& rank) {
-  const geometry::MassProperties whole = whole_mass(simulation.model());
+  const geometry::MassProperties whole = total_mass(simulation);
+  const SolidCounts solids = solid_counts(simulation);
   const Mat3& J = whole.inertia;
-  std::string text =
-      table({{"format", report.format},
-             {"bodies", format("{}", simulation.model().bodies.size()),
-              format("{} of them move", moving_bodies(simulation.model()))},
-             {"joints", format("{}", simulation.model().joints.size()),
-              counted(static_cast<std::size_t>(loop_count(simulation.model())), "loop", "loops")},
-             {"freedoms", format("{}", rank.mobility), "independent motions at the start"},
-             {"constraint rows", format("{}", rank.rows),
-              rank.redundant == 0
-                  ? "none redundant"
-                  : format("{} redundant, of {}", rank.redundant, name_list(rank.names, 12))},
-             {"mass", format("{:.12g}", whole.mass), "kg"},
-             {"centre of mass", three_numbers(whole.com), "m, at the start"},
-             {"inertia about it", three_numbers(J.diagonal()), "kg m^2, xx yy zz"},
-             {"", three_numbers({J(0, 1), J(0, 2), J(1, 2)}), "kg m^2, xy xz yz"}},
-            "", false);
+  std::vector<std::vector<std::string>> of_solids;
+  if (!simulation.solids().empty())
+    of_solids = {{"solids", format("{}", simulation.solids().size()),
+                  format("{} elements, {} nodes", solids.elements, solids.nodes)},
+                 {"materials", format("{}", simulation.model().materials.size())},
+                 {"interfaces", format("{}", solids.interfaces),
+                  "bonds to bodies and conditions on displacements"}};
+  if (!simulation.model().contacts.pairs.empty())
+    of_solids.push_back(
+        {"contacts", format("{}", simulation.model().contacts.pairs.size()), "pairs"});
+  std::vector<std::vector<std::string>> rows = {
+      {"format", report.format},
+      {"bodies", format("{}", simulation.model().bodies.size()),
+       format("{} of them move", moving_bodies(simulation.model()))},
+      {"joints", format("{}", simulation.model().joints.size()),
+       counted(static_cast<std::size_t>(loop_count(simulation.model())), "loop", "loops")},
+      {"freedoms", format("{}", rank.mobility), "independent motions at the start"},
+      {"constraint rows", format("{}", rank.rows),
+       rank.redundant == 0
+           ? "none redundant"
+           : format("{} redundant, of {}", rank.redundant, name_list(rank.names, 12))},
+      {"mass", format("{:.12g}", whole.mass), "kg"},
+      {"centre of mass", three_numbers(whole.com), "m, at the start"},
+      {"inertia about it", three_numbers(J.diagonal()), "kg m^2, xx yy zz"},
+      {"", three_numbers({J(0, 1), J(0, 2), J(1, 2)}), "kg m^2, xy xz yz"}};
+  rows.insert(rows.begin() + 3, of_solids.begin(), of_solids.end());
+  std::string text = table(rows, "", false);
   using Kind = io::ImportNote::Kind;
   for (const Kind kind : {Kind::left_out, Kind::approximated, Kind::ignored}) {
     std::string list;
