@@ -22,6 +22,9 @@ using geometry::MassProperties;
 
 /// Groups of geoms that are shown unless asked otherwise.
 constexpr double kLastShownGroup = 2.0;
+/// Heights of one field, and relative difference of the spacings of its grid up to which they are
+/// the same.
+constexpr double kMostHeights = 1e6, kSameSpacing = 1e-6;
 
 /// Integrals over the tetrahedra between the triangles of a surface and a point, each counted
 /// positive.
@@ -79,6 +82,8 @@ bool full_sizes(const std::string& type, const std::vector<double>& half, std::v
 MjcfGeoms::MjcfGeoms(MjcfFile& file, const std::string& folder)
     : file_(file), folder_(folder), in_pairs_(names_in_pairs()) {
   for (const auto* asset : file_.sections("asset"))
+    for (const auto* e : file_.xml.children(*asset, "hfield")) read_heights(*e);
+  for (const auto* asset : file_.sections("asset"))
     for (const auto* e : file_.xml.children(*asset, "mesh")) {
       const MjcfTag tag{file_, *e, {"mesh"}, ""};
       std::string path = tag.text("file");
@@ -100,6 +105,35 @@ MjcfGeoms::MjcfGeoms(MjcfFile& file, const std::string& folder)
       }
       file_.ignored.attributes(*e, {"class", "maxhullvert", "smoothnormal", "content_type"});
     }
+}
+
+/// Heights as numbers, which MuJoCo scales to the range from 0 to the height in 'size', rows from
+/// +y to -y; none are a flat field. Those in files are not read.
+void MjcfGeoms::read_heights(const XmlFile::Element& e) {
+  XmlFile& xml = file_.xml;
+  const auto rows = xml.number(e, "nrow"), columns = xml.number(e, "ncol");
+  const auto size = xml.numbers(e, "size", 4, 4);
+  const std::string name = xml.text(e, "name").value_or("");
+  const auto is_count = [](double n) { return n >= 2.0 && n <= 1e4 && n == std::floor(n); };
+  if (!size || xml.text(e, "file") || !rows || !columns || !is_count(*rows) ||
+      !is_count(*columns) || *rows * *columns > kMostHeights || !((*size)[0] > 0.0) ||
+      !((*size)[1] > 0.0))
+    return;
+  const auto m = static_cast<std::size_t>(*rows), n = static_cast<std::size_t>(*columns);
+  std::vector<double> values(m * n, 0.0);
+  if (e.Attribute("elevation") != nullptr) {
+    const auto given = xml.numbers(e, "elevation", m * n, m * n);
+    if (!given) return;
+    values = *given;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double from = *least, range = *most - *least;
+    for (double& z : values) z = range > 0.0 ? (z - from) / range * (*size)[2] : 0.0;
+  }
+  Heights field{2.0 * (*size)[0] / (*columns - 1.0), 2.0 * (*size)[1] / (*rows - 1.0), {}};
+  for (std::size_t row = m; row-- > 0;)
+    field.rows.emplace_back(values.begin() + static_cast<std::ptrdiff_t>(row * n),
+                            values.begin() + static_cast<std::ptrdiff_t>((row + 1) * n));
+  heights_[name] = std::move(field);
 }
 
 /// Names of geoms that touch in pairs of their own.
@@ -224,7 +258,15 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
     xml.fault(e, format("<geom> has the unknown type {}", quote(type)),
               did_you_mean(type, types) + "Types: " + name_list(types) + ".");
   if (type == "plane") geom.shape = shape;
-  if (type == "hfield" || type == "sdf")
+  const auto field = heights_.find(tag.text("hfield"));
+  if (type == "hfield" && field != heights_.end() &&
+      std::abs(field->second.along_x - field->second.along_y) <=
+          kSameSpacing * field->second.along_x) {
+    shape.kind = "height_field";
+    shape.sizes = {field->second.along_x};
+    shape.heights = field->second.rows;
+    geom.shape = shape;
+  } else if (type == "hfield" || type == "sdf")
     file_.ignored.add(e, format("<geom type=\"{}\">", type), "is not read");
   const geometry::ShapeKind* kind = geometry::find_shape_kind(type);
   if (kind == nullptr || std::find(types.begin(), types.end(), type) == types.end()) return geom;

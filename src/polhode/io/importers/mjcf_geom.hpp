@@ -44,10 +44,18 @@ class MjcfGeoms {
   [[nodiscard]] std::set<std::string> names_in_pairs();
   [[nodiscard]] geometry::MassProperties mass_of_mesh(const Mesh& mesh);
 
+  /// Heights of an <hfield>, rows from -y to +y, over a grid.
+  struct Heights {
+    double along_x, along_y;  ///< Spacing of the grid [m].
+    std::vector<std::vector<double>> rows;
+  };
+  void read_heights(const XmlFile::Element& e);
+
   MjcfFile& file_;
   std::string folder_;
   std::set<std::string> in_pairs_;
   std::map<std::string, Mesh> meshes_;
+  std::map<std::string, Heights> heights_;
 };
 
 }  // namespace polhode::io

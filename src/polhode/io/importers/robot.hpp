@@ -31,9 +31,11 @@ struct Pose {
 struct RobotShape {
   const XmlFile::Element* at = nullptr;
   Pose pose;
-  std::string kind;                   ///< box, sphere, cylinder, capsule, ellipsoid, mesh, plane.
-  std::vector<double> sizes;          ///< As in a model file: full lengths [m].
-  std::string file;                   ///< Of a mesh, as written.
+  /// box, sphere, cylinder, capsule, ellipsoid, mesh, plane, height_field.
+  std::string kind;
+  std::vector<double> sizes;  ///< As in a model file: full lengths; of a height field spacing [m].
+  std::vector<std::vector<double>> heights;  ///< Of a height field, rows from -y to +y [m].
+  std::string file;                          ///< Of a mesh, as written.
   std::optional<std::string> folder;  ///< To which it is relative; left out: that of the robot.
   Vec3 scale = Vec3::Ones();          ///< Of a mesh.
   std::string name;                   ///< In the file; "": none.

@@ -109,4 +109,25 @@ std::string RobotMeshes::relative(const std::string& path) const {
       .string();
 }
 
+void put_sizes(const NodeBuilder& make, const RobotShape& shape, const Pose& pose,
+               SourceNode& node) {
+  const auto numbers = [&](const std::vector<double>& values) {
+    std::vector<SourceNode> list;
+    for (const double value : values) list.push_back(make.number(value));
+    return make.list(std::move(list));
+  };
+  if (shape.kind == "plane") {
+    make.put(node, "plane", make.direction(pose.R.col(2)));
+  } else if (shape.kind == "height_field") {
+    SourceNode field = make.map();
+    std::vector<SourceNode> rows;
+    for (const std::vector<double>& row : shape.heights) rows.push_back(numbers(row));
+    make.put(field, "spacing", make.number(shape.sizes.at(0)));
+    make.put(field, "heights", make.list(std::move(rows)));
+    make.put(node, "height_field", std::move(field));
+  } else {
+    make.put(node, shape.kind, numbers(shape.sizes));
+  }
+}
+
 }  // namespace polhode::io

@@ -32,4 +32,9 @@ class RobotMeshes {
   std::vector<ImportNote>& notes_;
 };
 
+/// Adds the sizes of a shape that is no mesh: the normal of a plane, the heights of a field.
+/// @param pose  In the body's coordinates.
+void put_sizes(const NodeBuilder& make, const RobotShape& shape, const Pose& pose,
+               SourceNode& node);
+
 }  // namespace polhode::io

@@ -172,18 +172,15 @@ class ModelWriter {
       const NodeBuilder make{xml_.line(*shape.at)};
       SourceNode node = make.map();
       const Pose pose = in_body(i) * shape.pose;
-      const bool plane = shape.kind == "plane";
+      const bool plane = shape.kind == "plane", ground = plane || !shape.heights.empty();
       if (shape.kind == "mesh") {
         if (!meshes_.write(shape, make, node)) continue;
-      } else if (plane && !at(tree_.grounded, i)) {
-        note(Kind::ignored, *shape.at, "a plane on a body that moves is not read");
+      } else if (ground && !at(tree_.grounded, i)) {
+        note(Kind::ignored, *shape.at,
+             format("a {} on a body that moves is not read", plane ? "plane" : "height field"));
         continue;
-      } else if (plane) {
-        make.put(node, "plane", make.direction(pose.R.col(2)));
       } else {
-        std::vector<SourceNode> sizes;
-        for (const double s : shape.sizes) sizes.push_back(make.number(s));
-        make.put(node, shape.kind, make.list(std::move(sizes)));
+        put_sizes(make, shape, pose, node);
       }
       if (!pose.p.isZero(0.0)) make.put(node, "position", make.vector(pose.p));
       if (!pose.R.isIdentity(0.0) && !plane)
