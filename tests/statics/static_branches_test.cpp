@@ -87,5 +87,87 @@ TEST(StaticBranches, ALoadBelowTheLimitIsCarriedByTheBranchFromTheUnloadedState)
   }
 }
 
+/// A column whose weight stands 1 mm off its axis: under 1.5 times the buckling load the branch
+/// from the unloaded state has no limit point and leads to 1.4959 rad, a root of the balance of
+/// moments θ = 1.5 (sin(θ) + 0.001 cos(θ)). Newton's method finds the unstable branch at −0.003 rad
+/// and the one of the other side easily. @tests{statics-jump}
+TEST(StaticBranches, AnImperfectColumnFollowsItsBranchBeyondBuckling) {
+  double root = 1.5;
+  for (int i = 0; i < 50; ++i) root = 1.5 * (std::sin(root) + 1e-3 * std::cos(root));
+  for (const std::string history : {"", "analysis.history=1"})
+    for (const int n : {1, 2, 3, 4, 5, 8, 10, 20, 50, 100, 1000}) {
+      std::vector<std::string> set{format("analysis.load_steps={}", n)};
+      if (!history.empty()) set.insert(set.end(), {history, "loads.f.force.2=-1.5*t"});
+      Simulation s(io::read_model_text(R"(
+format: 1
+bodies: {b: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.001, 0, 1]}}
+joints: {j: {type: revolute, bodies: [ground, b], at: [0, 0, 0], axis: y}}
+loads:
+  s: {type: torsional_spring, joint: j, stiffness: 1}
+  f: {type: force, body: b, force: [0, 0, -1.5]}
+analysis: {type: statics}
+output: {hdf5: false}
+)",
+                                       "column.yaml", set));
+      const RunSummary r = s.run();
+      ASSERT_EQ(r.end, RunEnd::finished) << n << r.message;
+      EXPECT_EQ(r.statics->unstable, 0) << n << history;
+      EXPECT_TRUE(r.statics->limit_points.empty()) << n << history;
+      const Vec3 at = s.body(0).r;
+      const double angle = std::atan2(at.x(), at.z()) - std::atan2(0.001, 1.0);
+      EXPECT_NEAR(angle, root, 1e-8) << n << history;
+    }
+}
+
+/// A cantilever under five times EI/L² along it and 0.01 of that to the side bends to the other
+/// side of its end by 0.7954 L (the elastica, by shooting), 20 elements to 2e-3.
+TEST(StaticBranches, ACantileverFollowsItsElasticaBeyondBuckling) {
+  for (const int n : {1, 2, 3, 4, 5, 8, 10, 20, 100}) {
+    Simulation s(io::read_model_text(R"(
+format: 1
+materials: {s: {type: elastic, youngs_modulus: 200 GPa, poisson_ratio: 0.3, density: 7800}}
+sections: {c: {type: circle, diameter: 0.01, material: s}}
+beams: {b: {points: [[0, 0, 0], [1, 0, 0]], elements: 20, section: c, bonded: {ground: start}}}
+loads: {f: {type: force, body: b.end, force: [-490.87385212340513, 0.9817477042468103, 0]}}
+analysis: {type: statics}
+output: {hdf5: false}
+)",
+                                     "elastica.yaml", {format("analysis.load_steps={}", n)}));
+    const RunSummary r = s.run();
+    ASSERT_EQ(r.end, RunEnd::finished) << n << r.message;
+    EXPECT_EQ(r.statics->unstable, 0) << n;
+    EXPECT_TRUE(r.statics->limit_points.empty()) << n;
+    EXPECT_NEAR(s.body(s.model().body_index("b.20")).r.y(), 0.7954, 2e-3) << n;
+  }
+}
+
+/// Bodies that hang from a hinge have no equilibrium without their weight. From the side they come
+/// to rest below it, not above.
+TEST(StaticBranches, ADoublePendulumHangsDown) {
+  for (const double angle : {-1.5, -0.5, 0.4, 1.2, 2.0}) {
+    Simulation s(io::read_model_text(
+        R"(
+format: 1
+gravity: [0, 0, -9.81]
+variables: {x: 1, z: 0}
+bodies:
+  b: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.5, 0, 0]}
+  c: {mass: 1, inertia: [0.1, 0.1, 0.1], position: ["1 + 0.5*x", 0, "0.5*z"]}
+joints:
+  j: {type: revolute, bodies: [ground, b], at: [0, 0, 0], axis: y}
+  k: {type: revolute, bodies: [b, c], at: [1, 0, 0], axis: y}
+analysis: {type: statics}
+output: {hdf5: false}
+)",
+        "pendulum.yaml",
+        {format("variables.x={}", std::cos(angle)), format("variables.z={}", std::sin(angle))}));
+    const RunSummary r = s.run();
+    ASSERT_EQ(r.end, RunEnd::finished) << angle << r.message;
+    EXPECT_EQ(r.statics->unstable, 0) << angle;
+    EXPECT_NEAR(s.body(0).r.z(), -0.5, 1e-9) << angle;
+    EXPECT_NEAR(s.body(1).r.z(), -1.5, 1e-9) << angle;
+  }
+}
+
 }  // namespace
 }  // namespace polhode::static_branches_tests

@@ -303,4 +303,54 @@ output: {hdf5: false}
   }
 }
 
+/// The work of drives against springs in statics is the energy of the springs, whatever the load
+/// steps: forces vary linearly with the way, so that the trapezoidal rule is exact.
+/// @tests{statics-work}
+TEST(DriveWork, InStaticsIsTheEnergyOfTheSpring) {
+  struct Case {
+    const char* drive;
+    std::size_t channel;
+    double work;
+  };
+  // A servo of 3 N m/rad at 1 rad against 2 N m/rad ends at 0.6 rad.
+  for (const Case& c :
+       {Case{"m: {type: rotary_motor, joint: j, angle: 1}", 6, 1.0},
+        Case{"m: {type: rotary_servo, joint: j, angle: 1, stiffness: 3, damping: 0}", 7, 0.36},
+        Case{"m: {type: rotary_motor, joint: j, moment: 2}", 6, 1.0}})
+    for (const int steps : {1, 10, 1000})
+      for (const bool history : {false, true}) {
+        Simulation s(io::read_model_text(format(R"yaml(
+format: 1
+bodies: {{b: {{mass: 1, inertia: [0.1, 0.1, 0.1]}}}}
+joints: {{j: {{type: revolute, bodies: [ground, b], at: [0, 0, 0], axis: z}}}}
+loads:
+  s: {{type: torsional_spring, joint: j, stiffness: 2}}
+  {}
+analysis: {{type: statics, load_steps: {}, {}}}
+output: {{hdf5: false}}
+)yaml",
+                                                c.drive, steps, history ? "history: 1" : ""),
+                                         "drive.yaml"));
+        const RunSummary r = s.run();
+        ASSERT_EQ(r.end, RunEnd::finished) << c.drive << r.message;
+        EXPECT_NEAR(s.load(1).at(c.channel), c.work, 1e-9) << c.drive << ' ' << steps << history;
+      }
+  // A body moved by 3 mm against 1 MN/m.
+  for (const int steps : {1, 10, 1000}) {
+    Simulation s(io::read_model_text(format(R"yaml(
+format: 1
+bodies: {{b: {{mass: 1, inertia: [0.1, 0.1, 0.1], motion: {{x: 0.003, y: 0, z: 0, rotation_vector: [0, 0, 0]}}}}}}
+loads:
+  s: {{type: spring_damper, bodies: [ground, b], at: [[-1, 0, 0], [0, 0, 0]], stiffness: 1e6}}
+analysis: {{type: statics, load_steps: {}}}
+output: {{hdf5: false}}
+)yaml",
+                                            steps),
+                                     "driven.yaml"));
+    const RunSummary r = s.run();
+    ASSERT_EQ(r.end, RunEnd::finished) << r.message;
+    EXPECT_NEAR(s.joint(0).work.at(0), 4.5, 1e-9) << steps;
+  }
+}
+
 }  // namespace polhode::drive_work_tests

@@ -177,5 +177,53 @@ TEST(SolidWithoutAFreeNode, RunsInStaticsAndModes) {
   EXPECT_THAT(modes.report().warnings.at(0), HasSubstr("every degree of freedom is constrained"));
 }
 
+/// A slider with 5 N of force against a spring that acts beyond some way only, in one step, in
+/// several, and along a history; with friction it stays up to 2 N, and slides freely to the spring.
+TEST(FreePlay, EndsWhereTheSpringActs) {
+  const std::string slider = R"yaml(
+format: 1
+bodies: {s: {mass: 2, inertia: [0.01, 0.01, 0.01], position: [0.5, 0, 0]}}
+joints: {j: {type: prismatic, bodies: [ground, s], at: [0, 0, 0], axis: x, JOINT}}
+loads:
+  f: {type: force, body: s, force: [F, 0, 0]}
+  SPRING
+analysis: {type: statics, load_steps: STEPS, HISTORY}
+output: {hdf5: false}
+)yaml";
+  const std::string free =
+      R"yaml(a: {type: translational_spring, joint: j, spring_force: "abs(x) < 0.1 ? 0 : 1000*(x-0.1)"})yaml";
+  const std::string one_sided =
+      "a: {type: spring_damper, bodies: [ground, s], at: [[0, 0, 0], [0.5, 0, 0]], stiffness: "
+      "1000, "
+      "free_length: 0.7, acts: tension}";
+  const std::string cubic =
+      R"yaml(a: {type: translational_spring, joint: j, spring_force: "1000*x^3"})yaml";
+  struct Case {
+    std::string name, joint, spring;
+    double x, tolerance;
+  };
+  for (const Case& c :
+       {Case{"free play", "", free, 0.105, 1e-9}, Case{"tension", "", one_sided, 0.205, 1e-9},
+        Case{"cubic", "", cubic, std::cbrt(5e-3), 1e-9},
+        Case{"friction", "friction: {force: 2}", free, 0.103, 2e-6},
+        Case{"stop", "limits: {upper: 0.3}", "", 0.3, 1e-5}})
+    for (const int steps : {1, 10, 100})
+      for (const bool history : {false, true}) {
+        std::string text = slider;
+        const auto put = [&](const std::string& key, const std::string& value) {
+          text.replace(text.find(key), key.size(), value);
+        };
+        put("JOINT", c.joint);
+        put("SPRING", c.spring);
+        put("STEPS", format("{}", steps));
+        put("HISTORY", history ? "history: 1" : "");
+        put("F", history ? "5*t" : "5");
+        Simulation s(io::read_model_text(text, "slider.yaml"));
+        const RunSummary r = s.run();
+        ASSERT_EQ(r.end, RunEnd::finished) << c.name << ' ' << steps << history << r.message;
+        EXPECT_NEAR(s.body(0).r.x() - 0.5, c.x, c.tolerance) << c.name << ' ' << steps << history;
+      }
+}
+
 }  // namespace
 }  // namespace polhode::slack_and_snap_tests

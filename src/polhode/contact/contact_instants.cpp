@@ -97,8 +97,10 @@ void ContactSet::points_at(std::span<const BodyStep> instants,
     made.rolling = f.rolling;
     made.torsion = f.torsion;
     made.size = std::min(p.data.a->detail, p.data.b->detail);
-    made.impulse = p.data.history.impulse;
-    made.turning = p.data.history.turning;
+    if (p.data.history.closed) {
+      made.impulse = p.data.history.impulse;
+      made.turning = p.data.history.turning;
+    }
     made.slips = p.data.history.closed && p.data.history.slips;
     if (is_over_surface(p.data.pair.kind)) {
       add_places_at(i, a, b, made, list);

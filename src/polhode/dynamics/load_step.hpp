@@ -32,6 +32,12 @@ namespace polhode {
   return is_load_step(c) ? c.load_factor - c.ga.delta * c.dt : c.load_factor;
 }
 
+/// Force of which the work over a step is made: forces of dynamics are means of the step; over a
+/// load step they vary from one end to the other, taken as a straight line. @eq{statics-work}
+[[nodiscard]] inline double working_force(const StepContext& c, double at_n, double in_step) {
+  return is_load_step(c) ? 0.5 * (at_n + in_step) : in_step;
+}
+
 /// Time at which functions are evaluated for t_n [s].
 [[nodiscard]] inline double function_time_n(const StepContext& c) {
   return is_load_step(c) ? std::max(c.t_n, 0.0) : c.t_n;

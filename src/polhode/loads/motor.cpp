@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/dynamics/load_step.hpp>
 #include <polhode/loads/motor.hpp>
 #include <polhode/math/gauss_rule.hpp>
 #include <polhode/system/angle_gradient.hpp>
@@ -54,8 +55,9 @@ void Motor::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows
   if (drive_ == Drive::effort) return;
   const TimeRates f = function_->rates(step.context.t_n1(), side);
   const bool position = drive_ == Drive::position;
-  rows.increment[0] =
-      target(step) - (position ? (*function_)(step.context.t_n) : step.history[kTarget]);
+  const StepContext& c = step.context;
+  rows.increment[0] = target(step) - (position ? load_factor_n(c) * (*function_)(function_time_n(c))
+                                               : step.history[kTarget]);
   rows.rate[0] = position ? f.rate : f.value;
   rows.second[0] = position ? f.second : f.rate;
 }
@@ -134,7 +136,7 @@ std::vector<double> Motor::report(const PairStep& step) const {
 
 void Motor::initialize(const PairStep& step, double* history) const {
   history[kCoordinate] = history[kTarget] = at_n1(step);
-  history[kWork] = history[kImpulse] = 0.0;
+  history[kWork] = history[kImpulse] = history[kForce] = 0.0;
   history[kStarted] = 1.0;
 }
 
@@ -142,10 +144,12 @@ void Motor::commit(const PairStep& step, double* history) const {
   const double at = at_n1(step);
   const double target = drive_ == Drive::speed ? this->target(step) : at;
   const double force = rows() > 0 ? step.lambda[0] : effort(step);
-  const double work = rows() > 0 ? work_of_step(step) : force * (at - step.history[kCoordinate]);
+  const double mean = working_force(step.context, step.history[kForce], force);
+  const double work = rows() > 0 ? work_of_step(step) : mean * (at - step.history[kCoordinate]);
   history[kCoordinate] = at;
   history[kTarget] = target;
   history[kWork] += work;
+  history[kForce] = force;
   history[kImpulse] += step.context.dt * force;
 }
 

@@ -50,8 +50,8 @@ class Motor : public InteractionItem {
 
  private:
   /// Layout of the history: coordinate and prescribed value at t_n, work and impulse since the
-  /// start, and 1 once these are known.
-  enum History : int { kCoordinate, kTarget, kWork, kImpulse, kStarted, kHistory };
+  /// start, 1 once these are known, and the force of the last load step.
+  enum History : int { kCoordinate, kTarget, kWork, kImpulse, kStarted, kForce, kHistory };
 
   [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;
   [[nodiscard]] double at_n1(const PairStep& step) const;

@@ -123,13 +123,15 @@ std::vector<double> Servo::report(const PairStep& step) const {
 
 void Servo::initialize(const PairStep& step, double* history) const {
   history[kCoordinate] = coordinate_at_n1(coordinate_, step.a, step.b, 0.0);
-  history[kError] = history[kIntegral] = history[kWork] = 0.0;
+  history[kError] = history[kIntegral] = history[kWork] = history[kForce] = 0.0;
 }
 
 void Servo::commit(const PairStep& step, double* history) const {
   const CoordinateMotion q = coordinate(step);
   const Command u = command(step, q);
-  const double work = u.force * (q.at_n1 - q.at_n);
+  const double mean = working_force(step.context, step.history[kForce], u.force);
+  const double work = mean * (q.at_n1 - q.at_n);
+  history[kForce] = u.force;
   history[kCoordinate] = q.at_n1;
   if (!u.limited) {
     history[kIntegral] += step.context.dt * u.error;

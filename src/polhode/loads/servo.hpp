@@ -48,8 +48,8 @@ class Servo : public InteractionItem {
 
  private:
   /// Layout of the history: coordinate and, for a speed, error at t_n; integral of the error, work
-  /// since the start.
-  enum History : int { kCoordinate, kError, kIntegral, kWork, kHistory };
+  /// since the start, and the force of the last load step.
+  enum History : int { kCoordinate, kError, kIntegral, kWork, kForce, kHistory };
   struct Command {
     double force = 0.0;
     double error = 0.0, error_n1 = 0.0;  ///< At t_{n+αf}, at t_{n+1}.

@@ -26,6 +26,7 @@
 #include <polhode/simulation/held_values.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/probe.hpp>
+#include <polhode/simulation/rows_at_instants.hpp>
 #include <polhode/simulation/seen_bodies.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
 #include <polhode/simulation/simulation_details.hpp>
@@ -80,6 +81,7 @@ struct Simulation::Impl {
   // Instantaneous results, computed once per state.
   std::unique_ptr<InstantTree> instant_tree;  ///< Of systems that solve_along_tree() takes.
   std::unique_ptr<InstantSolver> instant_solver;
+  RowsAtInstants rows_at_instants;
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0, which is reported.
   std::int64_t instant_step = -1;
@@ -488,6 +490,7 @@ struct Simulation::Impl {
     return instant;
   }
   void compute_instant();
+  [[nodiscard]] std::vector<Vec6> contact_wrenches();
   InstantSolver& solver_at_instant();
   bool solve_along_tree(VelocityReport& velocities);
 };

@@ -55,6 +55,19 @@ bool Simulation::Impl::solve_along_tree(VelocityReport& velocities) {
   return false;
 }
 
+/// Wrenches of contacts on the bodies at the instant, with the forces of stops in `projected`:
+/// those of closed rows, or of the last step where contacts are not rows or these are too many.
+std::vector<Vec6> Simulation::Impl::contact_wrenches() {
+  if (!has_unilateral_rows(system)) return contacts.wrenches();
+  std::vector<Vec6> wrenches;
+  if (!are_rows(system.contacts().get())) wrenches = contacts.wrenches();
+  double rounding = rounding_of_velocities();
+  if (state.dt_last > 0.0) rounding += system.touching_gap() / state.dt_last;
+  ClosedRows& closed = rows_at_instants.of(model, system);
+  if (closed.solve(solver_at_instant(), projected, rounding, wrenches)) return wrenches;
+  return contacts.wrenches();
+}
+
 void Simulation::Impl::compute_instant() {
   seen_bodies.begin(system, state.t);
   if (statics) {
@@ -82,7 +95,8 @@ void Simulation::Impl::compute_instant() {
   if (!solved) {
     std::vector<double> node_v = extrapolated_velocities(system, projected);
     projected.node_v.swap(node_v);
-    instant = solver_at_instant().accelerations(projected, contacts.wrenches());
+    const std::vector<Vec6> wrenches = contact_wrenches();
+    instant = solver_at_instant().accelerations(projected, wrenches);
     projected.node_v.swap(node_v);
   }
   instant_step = state.ledger.steps;

@@ -16,25 +16,29 @@ struct LoadInterval {
   double low = 0.0, high = 0.0;
 };
 
-/// Load at which stability changes between two equilibria: by bisection, and by linear
-/// interpolation of the vanishing stiffness.
-/// @param first, after  Numbers of unstable directions of the one below and the one above.
-/// @returns nothing if the equilibrium above lies on another branch.
-[[nodiscard]] std::optional<LimitPoint> locate_stability_change(const System& system,
-                                                                const StaticOptions& options,
-                                                                LoadInterval interval, int first,
-                                                                int after);
+/// Relation of two equilibria.
+enum class BranchRelation {
+  same,       ///< Connected, or not told apart.
+  changes,    ///< Connected, and stability changes between them.
+  ends,       ///< The branch of the one below ends before the load above.
+  continues,  ///< The branch of the one below goes on without the one above.
+};
 
-/// End of the branch of equilibria connected with the one below: by bisection, following the branch
-/// from below as far as it exists. @eq{statics-jump}
-/// @param continued  Set to the equilibrium on the branch from below at the load above, if that
-///                   branch does not end before.
-/// @returns nothing if the two are connected, as their distance decreases with the interval, or if
-///          the branch continues.
-[[nodiscard]] std::optional<LimitPoint> locate_jump(const System& system,
-                                                    const StaticOptions& options,
-                                                    LoadInterval interval,
-                                                    std::optional<State>& continued);
+/// Relation of two equilibria, with what was found on the way.
+struct BranchCheck {
+  BranchRelation relation = BranchRelation::same;
+  LimitPoint point;    ///< Where stability changes or the branch ends.
+  StaticStep further;  ///< A further equilibrium of a branch that continues, at its load factor,
+  State state;         ///< and its state.
+};
+
+/// Search along the branch of the equilibrium below for the one above, by bisection of the load. An
+/// equilibrium between belongs to the branch from below if it has the same number of unstable
+/// directions or, if both ends have, if it is nearer to the one below. @eq{statics-jump}
+/// @param first, after  Numbers of unstable directions of the one below and the one above; −1: not
+///                      known.
+[[nodiscard]] BranchCheck follow_branch(const System& system, const StaticOptions& options,
+                                        LoadInterval interval, int first, int after);
 
 /// Load at which a branch ends, from its last two equilibria: near a limit point the square of the
 /// vanishing stiffness is linear in the load. @eq{statics-limit-point}

@@ -409,65 +409,6 @@ void StaticNewton::assemble_unmixed() {
   nodes_.set_static(true, mixed_);
 }
 
-/// Whether the bodies of an interaction that follows their rotation over the step have turned
-/// relative to each other by half a turn or more: the nearest of the turns is then another one.
-/// Quaternions keep their sign from iterate to iterate, so that they tell more than half a turn
-/// from less.
-bool StaticNewton::turns_too_far(const InteractionRef& ref) const {
-  const InteractionTraits& traits = system_->traits(ref);
-  if (traits.lazy_history || (traits.history_size == 0 && traits.rows == 0)) return false;
-  const auto turned = [&](int body) {
-    if (body == kGround) return Quat::Identity();
-    return Quat(system_->motion(work_, body).q * system_->motion(last_, body).q.conjugate());
-  };
-  return turned(ref.a).coeffs().dot(turned(ref.b).coeffs()) <= 0.0;
-}
-
-/// Reason why a load step is rejected: mirror images, beams bent too far, more than half a turn,
-/// shapes passed through.
-std::string StaticNewton::refused(StaticStep& step) {
-  step.worst.clear();
-  for (const InteractionRef& ref : system_->interactions()) {
-    const InteractionGroup& group = system_->group(ref.group);
-    const BodyStep a = body_step(*system_, last_, trial_, ref.a),
-                   b = body_step(*system_, last_, trial_, ref.b);
-    const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row,
-                        work_.history.data() + ref.first_history};
-    const bool too_far = turns_too_far(ref);
-    if (!too_far && group.acceptable(ref.item, pair)) continue;
-    return format("{} '{}': {}", group.kind(), system_->name(ref),
-                  too_far ? "turned by half a turn or more in one load step"
-                          : group.traits(ref.item).refusal);
-  }
-  if (const int g = passed_shape(); g >= 0)
-    return format("contact of '{}': a point passed through a shape",
-                  system_->nodes().group(g).name());
-  return {};
-}
-
-void StaticNewton::commit(State& state, double load_factor) {
-  const Nodes& nodes = system_->nodes();
-  for (const InteractionRef& ref : system_->interactions()) {
-    if (system_->traits(ref).history_size == 0) continue;
-    const BodyStep a = body_step(*system_, last_, trial_, ref.a),
-                   b = body_step(*system_, last_, trial_, ref.b);
-    double* history = work_.history.data() + ref.first_history;
-    system_->group(ref.group).commit(
-        ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
-  }
-  if (!nodes.empty()) {
-    work_.node_x = trial_.node_x;
-    NodeStep instant = node_step(work_, trial_);
-    instant.x_n = instant.x_n1;
-    for (int g = 0; g < nodes.group_count(); ++g)
-      nodes.group(g).commit(instant, work_.element_history.data() + nodes.first_history(g),
-                            trial_.element_scratch.data() + nodes.first_scratch(g));
-  }
-  work_.t = load_factor;
-  held_ = nodes_.residual();
-  state = last_ = work_;
-}
-
 void StaticNewton::assemble_at(const State& state, double load_factor) {
   enter(load_factor, load_factor);
   start_at(state);

@@ -132,6 +132,7 @@ class StaticNewton {
   [[nodiscard]] double free_part_of_increment();
   double apply(double part, StaticStep& step);
   [[nodiscard]] bool search(double most, StaticStep& step, ElementReport& elements);
+  [[nodiscard]] double work_by_lag(const InteractionRef& ref, const PairStep& pair) const;
   void commit(State& state, double load_factor);
   [[nodiscard]] std::string refused(StaticStep& step);
   [[nodiscard]] bool turns_too_far(const InteractionRef& ref) const;

@@ -20,8 +20,10 @@ constexpr double kEase = 0.5, kBrake = 1.5;
 constexpr double kSmallSpeed = 1e-3;
 constexpr int kTries = 50;
 /// Number of steps, about half the model's size, after which the unbalanced force of a model
-/// without slack parts has to be below this part of the first one.
-constexpr int kLook = 25;
+/// without slack parts has to be below this part of the first one. If not, steps grow to the
+/// largest, and the search ends after the second number of them, about twenty times that size:
+/// springs with free play or a free length meet the model within it.
+constexpr int kLook = 25, kFarLook = 225;
 constexpr double kSameForce = 0.999;
 
 }  // namespace
@@ -57,6 +59,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
   const int bodies = 6 * system_->body_count();
   const double length = system_->length_scale();
   double resistance = 0.0, first_force = 0.0;
+  bool coasts = false;  // without more resistance than at the start
   for (int k = 0; k < kMaxSteps && !stopped(); ++k) {
     if (!(assemble().least_volume > 0.0)) break;
     aim(given_);
@@ -69,7 +72,9 @@ StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
     }
     measure(step);
     if (k == 0) first_force = step.residual;
-    if (!slack && k == kLook && step.residual > kSameForce * first_force) break;
+    if (k <= kLook || coasts)
+      coasts = !slack && k >= kLook && step.residual > kSameForce * first_force;
+    if (coasts && k >= kFarLook) break;
     if (!(resistance > 0.0)) break;
     if (!solver_.factor(matrix_, make_symmetric(), all_diagonal(resistance))) {
       resistance *= kBrake;
@@ -83,7 +88,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
       move = std::max(move, std::abs(x_[i]) / (i < bodies && i % 6 >= 3 ? 1.0 : length));
     const double part = std::min(move > kMaxMove ? kMaxMove / move : 1.0, free_part_of_increment());
     step.increments.push_back(apply(part, step));
-    resistance *= std::clamp(move / kMove, kEase, kBrake);
+    resistance *= std::clamp(move / (coasts ? kMaxMove : kMove), kEase, kBrake);
     if ((move < kSmallSpeed && k % 5 == 4) || k % kTries == kTries - 1) {
       const State here = work_;
       const State from = last_;

@@ -82,8 +82,16 @@ struct LoadStepper::Impl {
   }
   /// Size of the load factor or time: the loads at the start of a history grow from −1 to 0.
   [[nodiscard]] double size(double from) const { return from < 0.0 ? 1.0 : end(); }
+  /// The nearer of a limit and the end of the present one of the given load steps, where shorter
+  /// ones precede.
+  [[nodiscard]] double next_multiple(double from, double limit) const {
+    if (options.load_steps == 0 || from < 0.0) return limit;
+    const double multiple = longest() * (std::floor(from / longest() + kSame * 1e3) + 1.0);
+    return multiple < from + increment - kSame * end() ? std::min(limit, multiple) : limit;
+  }
   /// End of the next step with this increment.
   double next_factor(double from, double limit) {
+    limit = next_multiple(from, limit);
     if (!follows()) {
       const double factor = std::min(from + increment, limit);
       return limit - factor < kSame ? limit : factor;
@@ -135,28 +143,28 @@ struct LoadStepper::Impl {
   }
 
   /// Reports changes between the last equilibrium and this one: of stability, or of the branch. An
-  /// equilibrium on another branch is replaced by that of the branch from below, if there is one.
+  /// equilibrium on another branch is replaced by a nearer one on the branch from below, if that
+  /// continues.
   void look_between(const State& old, double from, State& state, StaticStep& step,
                     double expected) {
-    LoadInterval interval{old, state, from, step.load_factor};
-    // First a jump: on another branch stability may change too, at a different load.
-    std::optional<LimitPoint> point;
-    if (suspicious(old, state, step, expected)) {
-      std::optional<State> continued;
-      point = locate_jump(*system, options, interval, continued);
-      if (point) point->unstable = step.unstable;
-      if (continued) {
-        StaticStep again = newton.solve(*continued, step.load_factor);
-        if (again.converged) {
-          interval.above = state = std::move(*continued);
-          step = again;
-          take(std::move(again));
-        }
-      }
+    const bool changes = unstable >= 0 && step.unstable >= 0 && step.unstable != unstable;
+    if (!changes && !suspicious(old, state, step, expected)) return;
+    BranchCheck check = follow_branch(*system, options, {old, state, from, step.load_factor},
+                                      unstable, step.unstable);
+    switch (check.relation) {
+      case BranchRelation::same:
+        break;
+      case BranchRelation::changes:
+      case BranchRelation::ends:
+        report.limit_points.push_back(check.point);
+        break;
+      case BranchRelation::continues:
+        state = std::move(check.state);
+        step = check.further;
+        increment = std::max(0.5 * (state.t - from), kMinIncrement * size(from));
+        take(std::move(check.further));
+        break;
     }
-    if (!point && unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
-      point = locate_stability_change(*system, options, interval, unstable, step.unstable);
-    if (point) report.limit_points.push_back(*point);
   }
 
   /// Cables with segments without tension and without stiffness.
@@ -188,6 +196,20 @@ struct LoadStepper::Impl {
     return list;
   }
 
+  /// Replaces an unstable equilibrium that no branch leads to by a stable one, downhill from the
+  /// start: bodies that move freely without loads, as pendulums, have no equilibrium of their own
+  /// there.
+  void prefer_stable(const State& start, State& state, StaticStep& step) {
+    if (!(step.unstable > 0) || state_distance(*system, start, state) < kNear) return;
+    State down = start;
+    StaticStep stable = newton.relax(down, step.load_factor, false);
+    if (!stable.converged || stable.unstable > 0) return;
+    ++report.relaxations;
+    state = std::move(down);
+    step = stable;
+    take(std::move(stable));
+  }
+
   [[nodiscard]] bool stopped() const { return options.stop && options.stop->load(); }
 
   void accept(State old, double from, State& state, StaticStep& step, double expected) {
@@ -195,10 +217,12 @@ struct LoadStepper::Impl {
     if (!known && !unilateral() && (step.unstable > 0 || suspicious(old, state, step, expected))) {
       State unloaded = old;
       const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
-      known = none.converged;
+      known = none.converged && none.free_motions.empty();
       if (known) {  // which unloaded parts are stable?
         unstable = none.unstable;
         old = unloaded;
+      } else {
+        prefer_stable(old, state, step);
       }
     }
     if (known && !unilateral()) look_between(old, from, state, step, expected);
@@ -209,16 +233,16 @@ struct LoadStepper::Impl {
     ++equilibria;
     report.load_factor = step.load_factor;
     report.converged = step.load_factor >= end() * (1.0 - kSame);
-    if (options.load_steps > 0 || step.relaxed) return;
-    if (step.iterations <= kEasy) increment *= 2.0;
-    if (step.iterations >= kHard) increment *= 0.5;
+    if (step.relaxed) return;
+    if (step.iterations <= kEasy) increment = std::min(2.0 * increment, longest());
+    if (step.iterations >= kHard && options.load_steps == 0) increment *= 0.5;
   }
 
   /// Goes downhill to an equilibrium where Newton's method finds none near the start: that is no
-  /// equilibrium whatever the load, or has no stiffness, as a toggle at its dead centre. There is
-  /// no branch yet that would be left.
-  bool goes_down(State& state, double factor) {
-    if (equilibria > 0 || relaxed || unilateral()) return false;
+  /// equilibrium whatever the load, or has no stiffness, as a toggle at its dead centre or a spring
+  /// with free play. There is no branch that would be left: none yet, or it ends in a free motion.
+  bool goes_down(State& state, double factor, bool free) {
+    if ((equilibria > 0 && !free) || relaxed || unilateral()) return false;
     const State old = state;
     StaticStep step = newton.relax(state, factor, false);
     take(step);
@@ -297,7 +321,7 @@ struct LoadStepper::Impl {
       increment = kCut * (factor - from);
       if (increment >= kMinIncrement * size(from)) continue;
       increment = first;
-      if (goes_down(state, next_factor(from, limit))) return true;
+      if (goes_down(state, next_factor(from, limit), !step.free_motions.empty())) return true;
       {
         std::string soft;
         if (equilibria > 0) {
@@ -408,7 +432,8 @@ void LoadStepper::begin(State& state) {
   state.t = 0.0;
   s.report.load_factor = 0.0;
   s.report.converged = false;
-  s.equilibria = std::min(s.equilibria, 1);  // no secant leads on from the loads at the start
+  // No secant leads on from the loads at the start, and without any there is no branch yet.
+  s.equilibria = s.report.force > 0.0 ? std::min(s.equilibria, 1) : 0;
   s.increment = s.longest();
 }
 

@@ -62,7 +62,7 @@ struct ContactInstant {
   Vec3 along = Vec3::UnitX();                           ///< Direction of `friction`, world.
   double rolling = 0.0, torsion = 0.0;                  ///< [m]
   double size = 1.0;                                    ///< As ImpulsePoint::size [m].
-  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();  ///< Of the last step, as in its history.
+  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();  ///< Of the last step, if closed after it.
   bool slips = false;                                   ///< At the end of it.
 };
 
