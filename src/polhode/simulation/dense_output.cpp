@@ -18,9 +18,6 @@ namespace {
 constexpr int kDeepest = 6;
 /// Largest rotation of a body in a polynomial [rad]: angles are counted from its start.
 constexpr double kLargestTurn = 1.2;
-/// Distance from a node at which its accelerations are taken, over that at which steps end before
-/// breaks: these nodes are just after them.
-constexpr double kBeside = 4.0;
 /// Length of the steps that give rates of sums, relative to that of the step.
 constexpr double kTinyStep = 1e-6;
 /// Difference of a memory from its prediction that is rounding, relative to its size or 1.
@@ -240,7 +237,9 @@ struct DenseOutput::Impl {
   /// Completes a node by its accelerations. @param side  1: just after its time, −1: just before.
   void differentiate(Node& node, int side) {
     State now = node.state;
-    now.t *= 1.0 + side * kBeside * step_control::kJustBeside;
+    // Limits of functions from the other side are those of times which are nearer than this.
+    const TimeSide of = side > 0 ? TimeSide::kAfter : TimeSide::kBefore;
+    now.t = beside(beside(now.t, of), of);
     solver.project_velocities(now);
     const InstantSolution found = solver.accelerations(now);
     node.bodies.clear();

@@ -126,7 +126,7 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
   combine_ledger(state, columns, result_);
   result_.t = state.t + H;
   std::swap(state, result_);
-  if (system_->rows() > 0) report = project(state, report);
+  if (system_->rows() > 0) report = project(state, report, way.to_break);
   if (!report.converged) return report;
   bond_nodes(*system_, state);
   remember_coordinates(state);
@@ -142,13 +142,19 @@ void ExtrapolationTable::remember_coordinates(State& state) const {
   }
 }
 
-NewtonReport ExtrapolationTable::project(State& state, NewtonReport report) {
+/// Puts positions onto the joints, and velocities: at a kink of a drive onto those before it, as
+/// their jump follows the step.
+NewtonReport ExtrapolationTable::project(State& state, NewtonReport report, bool to_break) {
   report.converged = false;
   if (!solver_->assemble_positions(state).assembled) {
     report.reason = "the extrapolated positions cannot be assembled";
     return report;
   }
+  const double t = state.t;
+  // Limits of functions from the right are those of times which are nearer than this.
+  if (to_break) state.t = beside(beside(t, TimeSide::kBefore), TimeSide::kBefore);
   const VelocityReport velocities = solver_->project_velocities(state);
+  state.t = t;
   report.converged = velocities.residual <= kProjectedRates * velocities.scale;
   if (!report.converged)
     report.reason = "the extrapolated velocities cannot be projected onto the joints";

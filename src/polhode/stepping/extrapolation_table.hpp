@@ -27,7 +27,8 @@ class ExtrapolationTable {
     int columns = 2;  ///< Number of members: half of the order.
     /// Error above which the step is given up, also before its last member [-]; 0: never.
     double allowed = 0.0;
-    bool fresh = false;  ///< Predict the first single steps from the velocities at t_n.
+    bool fresh = false;     ///< Predict the first single steps from the velocities at t_n.
+    bool to_break = false;  ///< The step ends at a break of a function of time.
   };
   /// Takes extrapolated steps of the lengths parts·H; on failure, and where a step is given up, the
   /// state is not restored.
@@ -64,7 +65,7 @@ class ExtrapolationTable {
   /// step's error.
   void remember_coordinates(State& state) const;
   /// Puts bodies back onto the constraints, from which the result is off by the step's error.
-  NewtonReport project(State& state, NewtonReport report);
+  NewtonReport project(State& state, NewtonReport report, bool to_break);
 
   const System* system_;
   std::vector<int> counts_;

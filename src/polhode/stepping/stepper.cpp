@@ -71,6 +71,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     // Later trials may be accepted for their noise.
     give_up_above =
         automatic() && refused.count == 0 && H > least_step() ? allowed_error(state, H) : 0.0;
+    to_break = stands_at(ahead, before.t + H);
     report.newton = run_stages(state, stages, H, fresh);
     const bool met_stop = extrapolates() && table->met_stop();
     // Jumps below the wanted error do not disturb its estimate.

@@ -40,6 +40,7 @@ struct Stepper::Impl {
   /// error, or −1.
   std::optional<std::pair<double, int>> shortened;
   double give_up_above = 0.0;  ///< Error that ends an extrapolated trial early [-]; 0: none.
+  bool to_break = false;       ///< The trial ends at a break of a function of time.
   bool cut_short = false;      ///< A limit made the present step much shorter than planned.
   double tried_from = 0.0;  ///< Length of steps of order 2 that an extrapolated one replaces [s].
   StepReach reach;

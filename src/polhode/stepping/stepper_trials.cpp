@@ -10,7 +10,7 @@ namespace polhode {
 NewtonReport Stepper::Impl::run_stages(State& state, const std::vector<double>& list, double H,
                                        bool fresh) {
   if (extrapolates()) {
-    const ExtrapolationTable::Way way{columns(state), give_up_above, fresh};
+    const ExtrapolationTable::Way way{columns(state), give_up_above, fresh, to_break};
     return table->advance(state, list, H, single, control.newton, way);
   }
   NewtonReport report;
