@@ -2,8 +2,10 @@
 // Friction and stops of joints over one step.
 #include <joints/joint_cases.hpp>
 #include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/math/exp_map.hpp>
 #include <support/derivative.hpp>
+#include <support/run_text.hpp>
 
 namespace polhode::test::resistance_tests {
 namespace {
@@ -329,4 +331,25 @@ TEST(JointFriction, IsRefusedOnAJointWithoutFreedoms) {
 }
 
 }  // namespace
+/// A link that rests on its stop, with a centre of mass beside the joint along its axis, which has
+/// no part in the inertia of the rotation: it does not sink into the stop, at no step.
+TEST(JointStops, ALinkAtRestDoesNotSink) {
+  for (const std::string step :
+       {"duration: 2", "duration: 2, step: 1 ms", "duration: 0.5, step: 0.1 ms"}) {
+    Simulation s = test::made(format(R"yaml(
+format: 1
+gravity: [0, 0, -9.81]
+bodies: {{a: {{mass: 2, inertia: [0.03, 0.02, 0.015], position: [0.2, 0.05, 0.02]}}}}
+joints: {{j: {{type: revolute, bodies: [ground, a], at: [0, 0, 0], axis: x, limits: {{lower: 0, upper: 1}}}}}}
+loads: {{m: {{type: joint_moment, joint: j, moment: -1.5}}}}
+analysis: {{{}}}
+output: {{hdf5: false}}
+)yaml",
+                                     step));
+    const RunSummary r = test::finished(s);
+    EXPECT_GT(s.joint(0).coordinates.at(0), -1e-3) << step;  // the band of its barrier
+    EXPECT_LT(r.steps, 6000) << step;
+  }
+}
+
 }  // namespace polhode::test::resistance_tests

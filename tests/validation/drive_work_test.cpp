@@ -353,4 +353,34 @@ output: {{hdf5: false}}
   }
 }
 
+/// A cart that moves at 1 m/s from 0.05 s on, and 1 kg on a spring and a damper behind it: after
+/// the kink of the drive the mass lags by e^(−ζωt) sin(ω_d t)/ω_d, at any tolerance of extrapolated
+/// steps.
+TEST(DriveWork, AtKinksBetweenExtrapolatedSteps) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    Simulation s = made(R"(
+format: 1
+bodies:
+  cart: {mass: 4, inertia: [1, 1, 1]}
+  load: {mass: 1, inertia: [1, 1, 1], position: [-1, 0, 0]}
+joints:
+  guide: {type: prismatic, bodies: [ground, cart], at: [0, 0, 0], axis: x}
+  slide: {type: prismatic, bodies: [cart, load], at: [-1, 0, 0], axis: x}
+loads:
+  motor: {type: linear_motor, joint: guide, displacement: "t < 0.05 ? 0 : t - 0.05"}
+  spring: {type: translational_spring, joint: slide, stiffness: 100, damping: 2}
+analysis: {type: dynamics, duration: 0.4, tolerance: 1e-6}
+output: {hdf5: false}
+)",
+                        {format("analysis.tolerance={}", tolerance)});
+    const RunSummary r = finished(s);
+    EXPECT_LT(r.steps, 60) << tolerance;
+    EXPECT_TRUE(r.trusted()) << tolerance;
+    const double w = std::sqrt(99.0), t = 0.35;
+    const double lag = std::exp(-t) * std::sin(w * t) / w;
+    EXPECT_NEAR(s.body(1).r.x(), -1.0 + t - lag, 5.0 * tolerance) << tolerance;
+    EXPECT_LT(r.energy_drift, 10.0 * tolerance + 1e-12) << tolerance;
+  }
+}
+
 }  // namespace polhode::drive_work_tests

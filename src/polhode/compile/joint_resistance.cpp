@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <polhode/compile/joint_resistance.hpp>
 #include <polhode/core/error.hpp>
@@ -25,6 +26,7 @@ constexpr double kEarth = 9.81;
 /// Typical loads and inertias of the joint.
 struct Scales {
   double mass = 0.0, inertia = 0.0;  ///< Reduced, of the joint's bodies; about the joint.
+  double about_axis = 0.0;           ///< Reduced inertia of the rotation about the joint's axis.
   double weight = 0.0;               ///< Of the heavier body [N].
   double length = 1.0;               ///< Radius of gyration about the joint [m].
 };
@@ -32,18 +34,23 @@ struct Scales {
 Scales scales_of(const Model& model, const JointSpec& joint) {
   const double g = model.gravity.norm() > 0.0 ? model.gravity.norm() : kEarth;
   Scales s;
-  double per_mass = 0.0, per_inertia = 0.0;
-  for (const auto& [body, Z] : {std::pair(joint.a, joint.Z_a), std::pair(joint.b, joint.Z_b)}) {
+  double per_mass = 0.0, per_inertia = 0.0, per_axis = 0.0;
+  for (const auto& [body, Z, R] :
+       {std::tuple(joint.a, joint.Z_a, joint.R_a), std::tuple(joint.b, joint.Z_b, joint.R_b)}) {
     if (body == kGround) continue;
     const BodySpec& b = model.bodies[static_cast<std::size_t>(body)];
     if (b.fixed || !(b.mass > 0.0)) continue;
     const double inertia = b.mass * Z.squaredNorm() + b.inertia.trace() / 3.0;
     per_mass += 1.0 / b.mass;
     if (inertia > 0.0) per_inertia += 1.0 / inertia;
+    const Vec3 axis = R.col(2);
+    const double turned = b.mass * axis.cross(Z).squaredNorm() + axis.dot(b.inertia * axis);
+    if (turned > 0.0) per_axis += 1.0 / turned;
     s.weight = std::max(s.weight, b.mass * g);
   }
   s.mass = per_mass > 0.0 ? 1.0 / per_mass : 1.0;
   s.inertia = per_inertia > 0.0 ? 1.0 / per_inertia : s.mass;
+  s.about_axis = per_axis > 0.0 ? 1.0 / per_axis : s.inertia;
   s.length = std::sqrt(s.inertia / s.mass);
   return s;
 }
@@ -98,7 +105,7 @@ JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
   if (slides && joint.limits)
     r.slide = limits_of(*joint.limits, model, s.weight, s.mass, s.length, 1.0);
   const auto& angle = slides ? joint.angle_limits : joint.limits;
-  if (angle) r.turn = limits_of(*angle, model, s.weight * s.length, s.inertia, 1.0, s.length);
+  if (angle) r.turn = limits_of(*angle, model, s.weight * s.length, s.about_axis, 1.0, s.length);
   return r;
 }
 
