@@ -206,7 +206,7 @@ output: {hdf5: false}
        {Case{"free play", "", free, 0.105, 1e-9}, Case{"tension", "", one_sided, 0.205, 1e-9},
         Case{"cubic", "", cubic, std::cbrt(5e-3), 1e-9},
         Case{"friction", "friction: {force: 2}", free, 0.103, 2e-6},
-        Case{"stop", "limits: {upper: 0.3}", "", 0.3, 1e-5}})
+        Case{"stop", "limits: {upper: 0.3}", "", 0.3, 3e-5}})
     for (const int steps : {1, 10, 100})
       for (const bool history : {false, true}) {
         std::string text = slider;
