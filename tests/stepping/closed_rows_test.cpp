@@ -113,7 +113,9 @@ output: {{hdf5: false}}
     const BodyMotion m = s.body(1);
     ASSERT_NEAR(m.r.norm(), 1.5, 1e-9) << step;
     const Vec3 n = m.r.normalized(), g(0, 0, -kG);
-    const Vec3 a = g - n.dot(g) * n - m.v.squaredNorm() / 1.5 * n;
+    // Velocities of a step have a normal part of second order.
+    const Vec3 v = m.v - n.dot(m.v) * n;
+    const Vec3 a = g - n.dot(g) * n - v.squaredNorm() / 1.5 * n;
     EXPECT_LT((s.point(1, Vec3::Zero()).acceleration - a).norm(), 1e-8) << step;
   }
 }

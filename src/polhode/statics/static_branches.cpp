@@ -19,6 +19,8 @@ constexpr double kEnds = 1e-5;
 /// to these parts: nearly in proportion to the load, or by its root.
 constexpr int kTrials = 3, kMoreTrials = 10;
 constexpr double kShrinks = 0.25, kShrinksSlowly = 0.1;
+/// Ratio of the first two increments of Newton's method below which it contracts.
+constexpr double kContracts = 0.5;
 /// Largest extrapolation to a limit point, in differences of the last two loads.
 constexpr double kReach = 8.0;
 /// Remaining part of the distance, at the smallest interval, above which there is a jump, and
@@ -64,6 +66,13 @@ struct BranchSearch {
   [[nodiscard]] bool same_stability(const StaticStep& step) const {
     return first < 0 || step.unstable < 0 || step.unstable == first;
   }
+  /// Whether Newton's method contracted from its start on, so that there is hardly another solution
+  /// near it: this tells an equilibrium of equal stability on a third branch from one on the branch
+  /// from below that has left the others. Near a fold, where it decides nothing, distances tell.
+  [[nodiscard]] static bool contracts(const StaticStep& step) {
+    const std::vector<double>& e = step.increments;
+    return e.size() < 2 || e[1] < kContracts * e[0];
+  }
   [[nodiscard]] bool nearer_below(const State& state) const {
     return state_distance(system, at.below, state) < state_distance(system, state, at.above);
   }
@@ -99,7 +108,8 @@ struct BranchSearch {
       found.point.load_factor = factor;
       return false;
     }
-    if (same_stability(step) && nearer_below(middle)) {
+    if (same_stability(step) &&
+        (nearer_below(middle) || (stability_differs() && contracts(step)))) {
       at.low = factor;
       at.below = std::move(middle);
       at_low = std::abs(soft.stiffness);
@@ -138,7 +148,8 @@ struct BranchSearch {
     found.further = finder.solve(found.state, at.high);
     const bool there = found.further.converged;
     const double way = there ? state_distance(system, at.below, found.state) : 0.0;
-    if (there && same_stability(found.further) && way < close)
+    if (there && same_stability(found.further) &&
+        (way < close || (stability_differs() && contracts(found.further))))
       return finish(BranchRelation::continues);
     found.point.load_factor = 0.5 * (at.low + at.high);
     const bool connected = distance() <= close || (there && way <= close);
