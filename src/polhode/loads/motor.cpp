@@ -149,7 +149,7 @@ void Motor::commit(const PairStep& step, double* history) const {
   history[kCoordinate] = at;
   history[kTarget] = target;
   history[kWork] += work;
-  history[kForce] = force;
+  if (is_load_step(step.context)) history[kForce] = force;
   history[kImpulse] += step.context.dt * force;
 }
 

@@ -131,7 +131,7 @@ void Servo::commit(const PairStep& step, double* history) const {
   const Command u = command(step, q);
   const double mean = working_force(step.context, step.history[kForce], u.force);
   const double work = mean * (q.at_n1 - q.at_n);
-  history[kForce] = u.force;
+  if (is_load_step(step.context)) history[kForce] = u.force;
   history[kCoordinate] = q.at_n1;
   if (!u.limited) {
     history[kIntegral] += step.context.dt * u.error;

@@ -158,12 +158,16 @@ struct LoadStepper::Impl {
       case BranchRelation::ends:
         report.limit_points.push_back(check.point);
         break;
-      case BranchRelation::continues:
+      case BranchRelation::continues: {
+        // Tangent and reactions are those of the last search.
+        StaticStep again = newton.solve(check.state, check.further.load_factor);
+        if (!again.converged) break;
         state = std::move(check.state);
-        step = check.further;
+        step = again;
         increment = std::max(0.5 * (state.t - from), kMinIncrement * size(from));
-        take(std::move(check.further));
+        take(std::move(again));
         break;
+      }
     }
   }
 
