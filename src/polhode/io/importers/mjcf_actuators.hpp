@@ -15,8 +15,8 @@ void read_actuators(MjcfFile& file, MjcfRefusals& refusals, const MjcfBodies& bo
                     const ImportOptions& options, const MjcfControls& controls,
                     MjcfTendons& tendons, Robot& robot);
 
-/// Adds the armatures and dampings of actuators to their joints and tendons, on which they act also
-/// where the actuators are switched off. To be called before anything depends on inertias.
+/// Adds the armatures and dampings of actuators to their joints and tendons; they act there also if
+/// the actuators are switched off. To be called before anything depends on inertias.
 void add_actuator_armatures(MjcfFile& file, MjcfRefusals& refusals, MjcfTendons& tendons,
                             Robot& robot);
 

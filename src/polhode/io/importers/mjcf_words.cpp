@@ -9,8 +9,8 @@ namespace polhode::io {
 
 namespace {
 
-/// Attributes that MuJoCo 4.0 reads in a tag, which stands alone or after the tag around it; those
-/// that all actuators or sensors have are under these words.
+/// Attributes that MuJoCo 4.0 reads in a tag, which stands alone or after the tag around it. The
+/// common ones of all actuators or sensors are under these words.
 constexpr std::pair<std::string_view, std::string_view> kWords[] = {
     {"joint",
      "actuatorfrclimited actuatorfrcrange actuatorgravcomp armature axis class "

@@ -15,12 +15,12 @@ inline constexpr int kMemorySize = 7;
 struct MemoryWeights {
   int terms = 0;  ///< Zero: no memory, and no other number counts.
   double long_term = 1.0;
-  /// Of S[E_0, E_1], S(E_0) and S(E_1) in what is added to the elastic stress [-].
+  /// Weights of S[E_0, E_1], S(E_0) and S(E_1) in what is added to the elastic stress [-].
   double mean = 0.0, start = 0.0, end = 0.0;
   struct Term {
     double ratio;
-    double relaxed;  ///< Of the memory at t_n in the stress [-].
-    /// Of the memory at t_n, of E_0 and of E_1 in the memory at t_{n+1}; their sum is one [-].
+    double relaxed;  ///< Weight of the memory at t_n in the stress [-].
+    /// Weights of the memory at t_n, of E_0 and of E_1 in that at t_{n+1}; their sum is one [-].
     double past, from_start, from_end;
   };
   Term term[kMostRelaxations];
