@@ -115,6 +115,11 @@ TEST_F(CommandLine, ContinuesFromACheckpointBitForBit) {
   // ended.
   EXPECT_EQ(read("part/probes/tip.csv"), read("straight/probes/tip.csv"));
   EXPECT_EQ(value(rest.out, "frames"), "52");
+  const auto before = run({"run", "model.yaml", "--quiet", "-o", "part", "--restart",
+                           "part/checkpoint.pst", "--duration", "0.5 s"});
+  EXPECT_EQ(before.code, 3);
+  EXPECT_THAT(before.err, HasSubstr("--restart: the checkpoint is at t = 1 s, and the run ends at "
+                                    "0.5 s. Give a longer --duration"));
 }
 
 /// Results do not depend on the number of threads: libraries must not divide sums among threads.

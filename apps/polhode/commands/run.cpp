@@ -48,6 +48,12 @@ std::string results_folder(const RunOptions& options) {
 Simulation make_simulation(const RunOptions& options, Model model, std::string& note) {
   if (options.restart.empty()) return Simulation(std::move(model));
   State state = io::read_checkpoint(options.restart, model, build_system(model), &note);
+  const double end = model.analysis.duration;
+  if (model.analysis.type == "dynamics" && state.t - state.dt_last > end)
+    throw InputError(
+        "--restart",
+        format("the checkpoint is at t = {:.6g} s, and the run ends at {:.6g} s", state.t, end),
+        "Give a longer --duration");
   return {std::move(model), std::move(state)};
 }
 
