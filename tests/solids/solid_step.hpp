@@ -154,7 +154,7 @@ class SolidStep {
   return solids::make_material("materials.m", d);
 }
 
-/// The same whose stress relaxes, within a step and in ten; its constant part has a factor.
+/// A material whose stress relaxes, within a step and in ten; its constant part has a factor.
 [[nodiscard]] inline std::shared_ptr<const solids::Material> relaxing_material(
     solids::MaterialDescription d) {
   d.relaxation = {{0.7, 0.05}, {0.4, 1.1}};

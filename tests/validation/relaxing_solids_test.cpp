@@ -372,7 +372,7 @@ TEST(RelaxingSolids, ARegionRelaxesAgainstAnElasticOne) {
   }
 }
 
-// What such a material is not combined with is said by name.
+// Names of the analyses and parts that such a material is not combined with.
 TEST(RelaxingSolids, WhatTheyAreNotCombinedWithIsRefusedByName) {
   const std::string still = "0";
   const auto with = [&](const std::string& analysis) {

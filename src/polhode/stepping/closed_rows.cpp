@@ -57,8 +57,7 @@ void ClosedRows::find_stops(State& state, double rounding) {
     const Motion m = motion_of(body);
     const double turn = by * m.omega.norm();
     if (turn != 0.0) {
-      s.theta =
-          2.0 * std::tan(0.5 * std::abs(turn)) * std::copysign(1.0, turn) * m.omega.normalized();
+      s.theta = 2.0 * std::tan(0.5 * turn) * m.omega.normalized();
       s.Lambda_n1 = cay(s.theta) * s.Lambda_n;
     }
     s.u = by * m.v;
@@ -172,12 +171,13 @@ void ClosedRows::put_contact(const ContactInstant& at, double rounding) {
   const Vec3 across = n.cross(along);
   if (at.friction > 0.0) {
     const Vec3 tangential = slip - n.dot(slip) * n;
-    if (closed ? !at.slips : rests(tangential.norm(), normal)) {
+    if (tangential.isZero(0.0) || (closed ? !at.slips : rests(tangential.norm(), normal))) {
       const bool isotropic = at.friction_across == at.friction;
       const double mu = isotropic ? at.static_friction : at.friction;
       hold({along, across}, false, mu, isotropic ? mu : at.friction_across);
     } else {  // the force of the friction ellipse with the largest dissipation
-      const double x = at.friction * along.dot(slip), y = at.friction_across * across.dot(slip);
+      const double x = at.friction * along.dot(tangential),
+                   y = at.friction_across * across.dot(tangential);
       slide(-(at.friction * x * along + at.friction_across * y * across) / std::hypot(x, y), false);
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What <option> of an MJCF switches off, and values of actuators by their defaults.
+// Forces and constraints that <option> of an MJCF switches off, and values of actuators by their
+// defaults.
 #include <cmath>
 
 #include "mjcf_fixture.hpp"

@@ -22,8 +22,8 @@ using geometry::MassProperties;
 
 /// Groups of geoms that are shown unless asked otherwise.
 constexpr double kLastShownGroup = 2.0;
-/// Heights of one field, and relative difference of the spacings of its grid up to which they are
-/// the same.
+/// Number of heights of one field, at most, and relative difference of the spacings of its grid up
+/// to which they are equal.
 constexpr double kMostHeights = 1e6, kSameSpacing = 1e-6;
 
 /// Integrals over the tetrahedra between the triangles of a surface and a point, each counted

@@ -128,23 +128,20 @@ Quadrature quadrilateral_rule(int points) {
   return rule;
 }
 
+/// Points along a line times those of a rule for the triangle of this degree.
+Quadrature prism_rule(int points, int degree) {
+  Quadrature rule;
+  for (const auto& [z, w_z] : gauss(points))
+    for (const QuadraturePoint& p : triangle_rule(degree))
+      rule.push_back({{p.xi[0], p.xi[1], z}, p.weight * w_z});
+  return rule;
+}
+
 }  // namespace
 
-Quadrature wedge_rule() {
-  Quadrature rule;
-  for (const auto& [z, w_z] : gauss(2))
-    for (const QuadraturePoint& p : triangle_rule(2))
-      rule.push_back({{p.xi[0], p.xi[1], z}, p.weight * w_z});
-  return rule;
-}
+Quadrature wedge_rule() { return prism_rule(2, 2); }
 
-Quadrature wedge15_rule() {
-  Quadrature rule;
-  for (const auto& [z, w_z] : gauss(3))
-    for (const QuadraturePoint& p : triangle_rule(4))
-      rule.push_back({{p.xi[0], p.xi[1], z}, p.weight * w_z});
-  return rule;
-}
+Quadrature wedge15_rule() { return prism_rule(3, 4); }
 
 Quadrature collapsed_wedge_rule() {
   // A cube mapped to the prism: degree 9 in each variable, one of it for the Jacobian in the first.
