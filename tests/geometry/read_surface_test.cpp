@@ -201,7 +201,7 @@ TEST(ReadObj, ReportsErrorsWithTheirLocation) {
 TEST(ReadSurface, RefusesOtherFormats) {
   EXPECT_EQ(refusal("part.step", "ISO-10303-21;"),
             "part.step: a surface cannot be read from a file ending in '.step'. Use .stl (text or "
-            "binary), .obj, or .msh of MuJoCo.");
+            "binary), .obj, .dae, or .msh of MuJoCo.");
 }
 
 std::string msh(const geometry::TriangleSurface& surface) {

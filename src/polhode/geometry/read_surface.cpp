@@ -14,6 +14,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/input_file.hpp>
+#include <polhode/geometry/read_collada.hpp>
 #include <polhode/geometry/read_surface.hpp>
 
 namespace polhode::geometry {
@@ -295,14 +296,15 @@ std::string ending_of(const std::string& name) {
 
 TriangleSurface parse_surface(const std::string& name, std::string_view bytes) {
   const std::string ending = ending_of(name);
-  if (ending != ".stl" && ending != ".obj" && ending != ".msh")
+  if (ending != ".stl" && ending != ".obj" && ending != ".msh" && ending != ".dae")
     throw InputError(name, format("a surface cannot be read from a file ending in '{}'", ending),
-                     "Use .stl (text or binary), .obj, or .msh of MuJoCo");
+                     "Use .stl (text or binary), .obj, .dae, or .msh of MuJoCo");
   if (bytes.size() > std::size_t(std::numeric_limits<int>::max()))
     throw InputError(name, format("the file has {} bytes, which is too large", bytes.size()),
                      "Reduce the number of triangles");
   TriangleSurface surface = ending == ".stl"   ? parse_stl(name, bytes)
                             : ending == ".obj" ? parse_obj(name, bytes)
+                            : ending == ".dae" ? parse_collada(name, bytes)
                                                : parse_msh(name, bytes);
   if (surface.triangles.empty()) throw InputError(name, "the file has no triangles", kExportAgain);
   join_equal_points(surface);

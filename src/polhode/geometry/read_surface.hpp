@@ -8,8 +8,8 @@
 
 namespace polhode::geometry {
 
-/// Reads a triangle surface; the format follows from the file name: .stl (text or binary), .obj, or
-/// .msh of MuJoCo.
+/// Reads a triangle surface; the format follows from the file name: .stl (text or binary), .obj,
+/// .dae (COLLADA), or .msh of MuJoCo.
 ///
 /// Corners with equal coordinates are merged. Polygons of an .obj become fans of triangles. Nothing
 /// else is repaired: see check_closed() and orient_outward().

@@ -37,8 +37,8 @@ TEST_F(Mjcf, KeyframesAreTheStart) {
   const Vec3 turning = 0.2 * Vec3(s, 0, c) + 0.3 * Vec3(0, -1, 0);
   EXPECT_NEAR((tip.angular_velocity - Vec3(0, 0.7, 0) - turning).norm(), 0.0, kRounding);
   EXPECT_NEAR(Simulation(model).joint("h").coordinates[0], 0.5, kRounding);
-  EXPECT_THAT(notes("<worldbody>" + kTree + "</worldbody><keyframe><key mpos='1'/></keyframe>"),
-              HasSubstr("'mpos' of <key> moves nothing"));
+  EXPECT_THAT(fault("<worldbody>" + kTree + "</worldbody><keyframe><key mpos='1'/></keyframe>"),
+              HasSubstr("'mpos' of <key> has 1 numbers, but the model 0"));
   EXPECT_THAT(fault("<worldbody>" + kTree + "</worldbody><keyframe><key act='1'/></keyframe>"),
               HasSubstr("'act' of <key> has 1 numbers, but the model 0 activations"));
   EXPECT_THAT(notes("<worldbody>" + kTree + "</worldbody>" + kKeys),

@@ -434,7 +434,7 @@ TEST_F(Urdf, MeshesAreFoundInPackagesAndMissingOnesNamed) {
   write("pack/meshes/tetra.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
   write("pack/meshes/open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\n");
-  write("pack/meshes/picture.dae", "<COLLADA/>");
+  write("pack/meshes/picture.ply", "ply");
   const auto with = [&](const std::string& file, const std::string& scale = "") {
     return link("base", "") +
            link("arm", kInertial + "<visual><geometry><mesh filename='" + file + "'" + scale +
@@ -450,8 +450,8 @@ TEST_F(Urdf, MeshesAreFoundInPackagesAndMissingOnesNamed) {
       "hull");
   EXPECT_THAT(notes(with("pack/meshes/open.obj")),
               HasSubstr("is replaced by its convex hull, as its surface is not closed"));
-  EXPECT_THAT(notes(with("pack/meshes/picture.dae")),
-              HasSubstr("there is no reader of .dae files"));
+  EXPECT_THAT(notes(with("pack/meshes/picture.ply")),
+              HasSubstr("there is no reader of .ply files"));
   EXPECT_THAT(robot_fault(with("package://other/a.stl")),
               HasSubstr("there is no mesh 'package://other/a.stl'"));
   EXPECT_THAT(notes(with("package://other/a.stl"), {"import.allow_partial=true"}),

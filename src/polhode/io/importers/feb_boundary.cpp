@@ -64,8 +64,19 @@ void FebSolids::hold(const std::vector<int>& nodes, int component, int hold) {
   for (const int n : nodes) {
     int& holder = held_.try_emplace(n, std::array{-1, -1, -1})
                       .first->second[static_cast<std::size_t>(component)];
+    const auto k = static_cast<std::size_t>(component);
+    const FebHold& own = holds_[static_cast<std::size_t>(hold)];
+    if (holder >= 0 && own.prescribed) {
+      const FebHold& other = holds_[static_cast<std::size_t>(holder)];
+      if (other.prescribed && (own.values[k].factor != other.values[k].factor ||
+                               own.values[k].controller != other.values[k].controller))
+        model_.file.refuse(*own.at,
+                           format("the node {} has two prescribed displacements of one component",
+                                  model_.mesh.labels[static_cast<std::size_t>(n)]),
+                           "Prescribe each component once.");
+    }
     // FEBio lets what is prescribed override what is fixed.
-    if (holder < 0 || holds_[static_cast<std::size_t>(hold)].prescribed) holder = hold;
+    if (holder < 0 || own.prescribed) holder = hold;
   }
 }
 

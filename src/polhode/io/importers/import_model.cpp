@@ -13,6 +13,16 @@ namespace polhode::io {
 
 namespace {
 
+/// Whether tags of xacro stand in a text, outside of comments.
+bool has_xacro_tags(const std::string& text) {
+  for (std::size_t at = text.find("<xacro:"); at != std::string::npos;
+       at = text.find("<xacro:", at + 1)) {
+    const std::size_t comment = text.rfind("<!--", at);
+    if (comment == std::string::npos || text.find("-->", comment) < at) return true;
+  }
+  return false;
+}
+
 bool is_sdf(const std::string& file) { return file.ends_with(".sdf") || file.ends_with(".world"); }
 
 }  // namespace
@@ -26,6 +36,8 @@ Imported import_model(const ImportOptions& options, const std::string& folder) {
   std::string text = options.file.ends_with(".xacro")
                          ? expanded_by_xacro(options.file, options.arguments)
                          : read_file(options.file);
+  if (options.file.ends_with(".urdf") && has_xacro_tags(text))
+    text = expanded_by_xacro(options.file, options.arguments);
   auto source = std::make_shared<SourceText>(options.file, std::move(text));
   if (!options.keyframe.empty() && !options.file.ends_with(".xml")) {
     Diagnostics diagnostics(*source);

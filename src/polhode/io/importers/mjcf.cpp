@@ -44,7 +44,8 @@ class MjcfReader {
     add_medium(medium_, refusals_, bodies, robot_);
     if (robot_.links.size() < 2)
       xml_.fault(xml_.root(), "the model has no body", "Add <body> to <worldbody>.");
-    const MjcfControls controls = read_keyframe(file_, options_, activations(), robot_);
+    const MjcfControls controls =
+        read_keyframe(file_, options_, activations(), bodies.mocaps(), robot_);
     MjcfTendons tendons(file_, refusals_, bodies, options_, robot_);
     if (options_.actuators) add_actuator_armatures(file_, refusals_, tendons, robot_);
     tendons.read();

@@ -93,6 +93,8 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
         parts.axes = geom.axes;
       }
       const auto own = tag.name();
+      if (own && touching_.contains(*own))
+        xml.fault(*inner, format("the geom {} stands twice", quote(*own)), "Rename one of them.");
       if (own) touching_[*own] = {place.link, geom.friction, geom.dimensions};
       if (own && geom.shape)
         if (const std::string& kind = geom.shape->kind; kind == "sphere" || kind == "cylinder")
@@ -111,7 +113,9 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
       Pose frame = tag.pose();
       if (const auto ends = tag.numbers("fromto", 6, 6); !ends.empty())
         frame.p = 0.5 * Vec3(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
-      if (const auto site = tag.name()) sites_[*site] = {place.link, place.frame * frame};
+      if (const auto site = tag.name();
+          site && !sites_.try_emplace(*site, Site{place.link, place.frame * frame}).second)
+        xml.fault(*inner, format("the site {} stands twice", quote(*site)), "Rename one of them.");
       file_.skip(*inner);
     } else if (name == "frame") {
       static_cast<void>(xml.children(e, "frame"));
@@ -208,9 +212,11 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
   if (!given.empty() && frames_.contains(given))
     xml.fault(e, format("the body {} stands twice", quote(given)), "Rename one of them.");
   const std::string name = given.empty() ? format("body_{}", robot_.links.size()) : given;
-  if (xml.text(e, "mocap").value_or("false") == "true")
+  if (xml.text(e, "mocap").value_or("false") == "true") {
+    mocaps_.push_back(robot_.joints.size());
     file_.notes.push_back({ImportNote::Kind::approximated, xml.place(e),
                            format("the mocap body {} is fixed", quote(name))});
+  }
   const Pose pose = parent.frame * MjcfTag{file_, e, {}, ""}.pose();
 
   std::vector<const Element*> joints;
@@ -231,6 +237,10 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
                                 : MjcfTag{file_, *joints[k], {}, "", parent.suffix}.name().value_or(
                                       joints.size() == 1 ? name + "_joint"
                                                          : format("{}_joint_{}", name, k + 1));
+    const bool named = !joints.empty() && xml.text(*joints[k], "name").value_or("") != "";
+    if (named && !given_joints_.insert(joint.name).second)
+      xml.fault(*joint.at, format("the joint {} stands twice", quote(joint.name)),
+                "Rename one of them.");
     while (!joint_names_.insert(joint.name).second) joint.name += "_2";
     joint.type = "fixed";
     joint.origin = k == 0 ? pose : Pose{};
@@ -249,6 +259,10 @@ void MjcfBodies::read_body(const Element& e, const Place& parent) {
     robot_.joints.push_back(std::move(joint));
   }
   const Element* given_mass = xml.child(e, "inertial");
+  if (const Element* next =
+          given_mass == nullptr ? nullptr : given_mass->NextSiblingElement("inertial"))
+    xml.fault(*next, format("the body {} has a second <inertial>", quote(name)),
+              "Keep one of the two.");
   const auto how = file_.compiler.inertia;
   const bool from_geoms = how == MjcfCompiler::FromGeoms::always ||
                           (how == MjcfCompiler::FromGeoms::automatic && given_mass == nullptr);
@@ -299,10 +313,12 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
           format("the joint {} has a 'springdamper', but is no hinge or slide", quote(joint.name)),
           "Add a bushing, whose moment is the same at small angles.");
   }
-  const auto effort = [&](const char* attribute) {
+  const auto effort = [&](const char* attribute, std::array<double, 2>* law = nullptr) {
     const std::vector<double> list = tag.numbers(attribute, 1, 8);
     for (std::size_t k = 1; k < list.size(); ++k)
-      if (list[k] != 0.0)
+      if (law != nullptr && k < 3 && joint.is_single())
+        (*law)[k - 1] = list[k];
+      else if (list[k] != 0.0)
         refusals_.add(tag.e, format("'{}' of {} is a polynomial", attribute, quote(joint.name)),
                       "Give one number.");
     if (list.empty()) return 0.0;
@@ -311,8 +327,8 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
                       "Give a value that is not negative.");
     return list[0];
   };
-  if (file_.flags.dampers) joint.damping = effort("damping");
-  if (file_.flags.springs) joint.stiffness = effort("stiffness");
+  if (file_.flags.dampers) joint.damping = effort("damping", &joint.damper_law);
+  if (file_.flags.springs) joint.stiffness = effort("stiffness", &joint.spring_law);
   file_.ignored.attributes(tag.e, {"damping", "stiffness"});
   if (tag.has("springyield"))
     refusals_.add(tag.e, format("the spring of {} yields", quote(joint.name)),
@@ -352,7 +368,7 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
     joint.most_effort = range[1];
   }
   joint.zero = coordinate("ref");
-  joint.rest = coordinate("springref");
+  joint.rest = joint.law_rest = coordinate("springref");
   read_limits(tag, joint);
 }
 

@@ -59,6 +59,8 @@ class MjcfBodies {
   [[nodiscard]] const std::map<std::string, Touching>& touching() const { return touching_; }
   /// Axes of inertia of each body, in its coordinates.
   [[nodiscard]] const std::map<std::string, Mat3>& axes() const { return axes_; }
+  /// Joints of mocap bodies in the robot, in the order of the file.
+  [[nodiscard]] const std::vector<std::size_t>& mocaps() const { return mocaps_; }
   /// Geoms around which a medium flows as around ellipsoids.
   [[nodiscard]] const std::vector<const XmlFile::Element*>& ellipsoids() const {
     return ellipsoids_;
@@ -102,7 +104,8 @@ class MjcfBodies {
   std::map<std::string, Touching> touching_;
   std::map<std::string, Mat3> axes_;
   std::vector<const Element*> ellipsoids_;
-  std::set<std::string> joint_names_;
+  std::set<std::string> joint_names_, given_joints_;
+  std::vector<std::size_t> mocaps_;
   int copies_ = 0;  ///< Of all <replicate>.
   /// A joint whose spring and damper follow from a time constant and a damping ratio.
   struct Tuned {

@@ -22,11 +22,17 @@ class MjcfContactReader {
     for (int k = 0; k < 2; ++k) {
       exclusion.links[k] = file_.xml.required_text(e, k == 0 ? "body1" : "body2");
       if (exclusion.links[k].empty()) return;
-      if (!bodies_.frames().contains(exclusion.links[k]))
-        return file_.xml.fault(e, format("there is no body {}", quote(exclusion.links[k])),
-                               "Name a body.");
+      if (!has_body(e, exclusion.links[k])) return;
     }
     robot_.contacts.exclusions.push_back(exclusion);
+  }
+
+  /// Errors about names of bodies and geoms, where contacts are not read.
+  void check(const XmlFile::Element& e) {
+    for (const char* body : {"body1", "body2"})
+      if (const auto name = file_.xml.text(e, body)) has_body(e, *name);
+    for (const char* geom : {"geom1", "geom2"})
+      if (const auto name = file_.xml.text(e, geom)) has_geom(e, *name);
   }
 
   void read_pair(const MjcfTag& tag) {
@@ -38,10 +44,8 @@ class MjcfContactReader {
     for (int k = 0; k < 2; ++k) {
       geoms[k] = file_.xml.required_text(tag.e, k == 0 ? "geom1" : "geom2");
       if (geoms[k].empty()) return;
+      if (!has_geom(tag.e, geoms[k])) return;
       const auto geom = bodies_.touching().find(geoms[k]);
-      if (geom == bodies_.touching().end())
-        return file_.xml.fault(tag.e, format("there is no geom {}", quote(geoms[k])),
-                               "Name a geom.");
       pair.links[k] = geom->second.link;
       for (int i = 0; i < 3; ++i)
         friction[i] = std::max(friction[i], geom->second.friction[static_cast<std::size_t>(i)]);
@@ -101,6 +105,24 @@ class MjcfContactReader {
   }
 
  private:
+  /// Whether there is a body of a name; otherwise an error.
+  bool has_body(const XmlFile::Element& e, const std::string& name) {
+    if (bodies_.frames().contains(name)) return true;
+    file_.xml.fault(e, format("there is no body {}", quote(name)), nearest(name, bodies_.frames()));
+    return false;
+  }
+  bool has_geom(const XmlFile::Element& e, const std::string& name) {
+    if (bodies_.touching().contains(name)) return true;
+    file_.xml.fault(e, format("there is no geom {}", quote(name)),
+                    nearest(name, bodies_.touching()));
+    return false;
+  }
+  template <class Map>
+  static std::string nearest(const std::string& name, const Map& known) {
+    std::vector<std::string> names;
+    for (const auto& entry : known) names.push_back(entry.first);
+    return did_you_mean(name, names) + "There are: " + name_list(names, 12) + ".";
+  }
   static bool has_shape(const RobotLink& link) {
     return !link.visual.empty() || !link.collision.empty();
   }
@@ -156,11 +178,17 @@ void read_contacts(MjcfFile& file, const MjcfBodies& bodies, const ImportOptions
   MjcfContactReader reader(file, bodies, robot);
   for (const XmlFile::Element* section : file.sections("contact")) {
     for (const XmlFile::Element* e : file.xml.children(*section, "exclude")) {
-      if (options.contacts) reader.read_exclusion(*e);
+      if (options.contacts)
+        reader.read_exclusion(*e);
+      else
+        reader.check(*e);
       file.skip(*e);
     }
     for (const XmlFile::Element* e : file.xml.children(*section, "pair")) {
-      if (options.contacts) reader.read_pair({file, *e, {"pair"}, ""});
+      if (options.contacts)
+        reader.read_pair({file, *e, {"pair"}, ""});
+      else
+        reader.check(*e);
       file.skip(*e);
     }
     if (!options.contacts)

@@ -22,6 +22,8 @@ using geometry::MassProperties;
 
 /// Groups of geoms that are shown unless asked otherwise.
 constexpr double kLastShownGroup = 2.0;
+/// Largest number of bits of contact.
+constexpr double kMostBits = 2147483647.0;
 /// Number of heights of one field, at most, and relative difference of the spacings of its grid up
 /// to which they are equal.
 constexpr double kMostHeights = 1e6, kSameSpacing = 1e-6;
@@ -173,8 +175,13 @@ MjcfGeom MjcfGeoms::read(const MjcfTag& tag, const Pose& frame, bool massive) {
   const std::string type = tag.text("type", "sphere");
   const double group = tag.number("group", 0.0);
   geom.seen = group <= kLastShownGroup;
-  const std::pair bits{static_cast<int>(tag.number("contype", 1.0)),
-                       static_cast<int>(tag.number("conaffinity", 1.0))};
+  const auto whole = [&](const char* attribute) {
+    const double value = tag.number(attribute, 1.0);
+    if (value == std::floor(value) && std::abs(value) <= kMostBits) return static_cast<int>(value);
+    xml.fault(e, format("'{}' of <geom> is {}", attribute, value), "Give a whole number.");
+    return 1;
+  };
+  const std::pair bits{whole("contype"), whole("conaffinity")};
   geom.touches = bits.first != 0 || bits.second != 0 || in_pairs_.contains(tag.name().value_or(""));
   if (const std::vector<double> friction = tag.numbers("friction", 1, 3); !friction.empty())
     std::copy(friction.begin(), friction.end(), geom.friction.begin());

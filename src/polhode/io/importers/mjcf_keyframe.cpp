@@ -28,8 +28,9 @@ Freedoms freedoms_of(const RobotJoint& joint) {
 
 class KeyframeReader {
  public:
-  KeyframeReader(MjcfFile& file, const Element& key, Robot& robot)
-      : xml_(file.xml), key_(key), robot_(robot) {
+  KeyframeReader(MjcfFile& file, const Element& key, const std::vector<std::size_t>& mocaps,
+                 Robot& robot)
+      : xml_(file.xml), key_(key), mocaps_(mocaps), robot_(robot) {
     for (const RobotJoint& joint : robot.joints) {
       whole_.positions += freedoms_of(joint).positions;
       whole_.velocities += freedoms_of(joint).velocities;
@@ -47,6 +48,7 @@ class KeyframeReader {
       at_q += own.positions;
       at_v += own.velocities;
     }
+    place_mocaps();
     MjcfControls controls;
     controls.controls = list("ctrl", "controls", active.size());
     const auto count = static_cast<std::size_t>(std::count(active.begin(), active.end(), true));
@@ -63,11 +65,29 @@ class KeyframeReader {
     const auto given = xml_.numbers(key_, attribute, 0, kMostNumbers);
     if (!given || given->empty()) return {};
     if (given->size() == count) return *given;
-    xml_.fault(key_,
-               format("'{}' of <key> has {} numbers, but the model {} {}", attribute, given->size(),
-                      count, what),
-               "Give one for each, in the order of the joints and actuators in the file.");
+    xml_.fault(
+        key_,
+        format("'{}' of <key> has {} numbers, but the model {} {}", attribute, given->size(), count,
+               what),
+        "Give one for each, in the order of the joints, actuators or mocap bodies in the file.");
     return {};
+  }
+
+  /// Puts the bodies that a program moves in MuJoCo where the keyframe has them.
+  void place_mocaps() {
+    const std::vector<double> p = list("mpos", "numbers of mocap bodies", 3 * mocaps_.size());
+    const std::vector<double> q = list("mquat", "numbers of mocap bodies", 4 * mocaps_.size());
+    for (std::size_t k = 0; k < mocaps_.size(); ++k) {
+      Pose& pose = robot_.joints[mocaps_[k]].origin;
+      if (!p.empty()) pose.p = Eigen::Map<const Vec3>(&p[3 * k]);
+      if (q.empty()) continue;
+      const Quat turn(q[4 * k], q[4 * k + 1], q[4 * k + 2], q[4 * k + 3]);
+      if (turn.norm() > 0.0)
+        pose.R = turn.normalized().toRotationMatrix();
+      else
+        xml_.fault(key_, "'mquat' of <key> has a quaternion of length 0",
+                   "Give four numbers that are not all zero.");
+    }
   }
 
   void place(RobotJoint& joint, const double* q) {
@@ -93,6 +113,7 @@ class KeyframeReader {
 
   XmlFile& xml_;
   const Element& key_;
+  const std::vector<std::size_t>& mocaps_;  ///< Their joints.
   Robot& robot_;
   Freedoms whole_{0, 0};
 };
@@ -100,7 +121,8 @@ class KeyframeReader {
 }  // namespace
 
 MjcfControls read_keyframe(MjcfFile& file, const ImportOptions& options,
-                           const std::vector<bool>& active, Robot& robot) {
+                           const std::vector<bool>& active, const std::vector<std::size_t>& mocaps,
+                           Robot& robot) {
   std::vector<const Element*> keys;
   for (const Element* section : file.sections("keyframe"))
     for (const Element* key : file.xml.children(*section, "key")) keys.push_back(key);
@@ -126,11 +148,7 @@ MjcfControls read_keyframe(MjcfFile& file, const ImportOptions& options,
       file.ignored.add(*keys[k], "a <key> other than that of the start", "is not read");
       continue;
     }
-    for (const char* attribute : {"mpos", "mquat"})
-      if (file.xml.text(*chosen, attribute))
-        file.ignored.add(*chosen, format("'{}' of <key>", attribute),
-                         "moves nothing: mocap bodies are fixed");
-    controls = KeyframeReader(file, *chosen, robot).read(active);
+    controls = KeyframeReader(file, *chosen, mocaps, robot).read(active);
     file.notes.push_back({ImportNote::Kind::approximated, file.xml.place(*chosen),
                           format("the model starts at the keyframe {}; MuJoCo starts at its "
                                  "reference configuration by default",

@@ -70,7 +70,7 @@ class SensorReader {
     probe.kind = kind->kind;
     probe.of = file_.xml.required_text(e, kind->object);
     probe.name = file_.xml.text(e, "name").value_or(format("{}_{}", tag, probe.of));
-    if (probe.of.empty()) return;
+    if (probe.of.empty() || !exists(e, kind->object, probe.of)) return;
     if (probe.kind == kOfBody
             ? !read_body(e, tag, probe)
             : probe.kind == kOfJoint && *kind->object == 's' && !find_joint(e, probe))
@@ -90,6 +90,24 @@ class SensorReader {
     std::string link;
     Pose pose;
   };
+
+  /// Whether there is a joint, tendon or actuator of a name; otherwise an error.
+  bool exists(const XmlFile::Element& e, const std::string& object, const std::string& name) {
+    std::vector<std::string> names;
+    if (object == "joint")
+      for (const RobotJoint& joint : robot_.joints) names.push_back(joint.name);
+    else if (object == "tendon" || object == "actuator")
+      for (const XmlFile::Element* section : file_.sections(object.c_str()))
+        for (const XmlFile::Element* one = section->FirstChildElement(); one != nullptr;
+             one = one->NextSiblingElement())
+          names.push_back(file_.xml.text(*one, "name").value_or(""));
+    else
+      return true;
+    if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+    file_.xml.fault(e, format("there is no {} {}", object, quote(name)),
+                    did_you_mean(name, names) + format("Name one of the {}s.", object));
+    return false;
+  }
 
   /// The joint between a body and its parent, by a site of the body.
   bool find_joint(const XmlFile::Element& e, RobotProbe& probe) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -86,7 +87,11 @@ struct RobotJoint {
   double damping = 0.0, friction = 0.0, stiffness = 0.0;
   double rest = 0.0;                 ///< Coordinate without force of the spring [rad, m].
   std::optional<double> rest_upper;  ///< The spring is without force from `rest` up to here.
-  double armature = 0.0;             ///< Inertance [kg m², kg].
+  /// Factors of the square and cube of the coordinate less `law_rest`, and of the rate, in a moment
+  /// or force against them; of the rate's square with its sign.
+  std::array<double, 2> spring_law{}, damper_law{};
+  double law_rest = 0.0;
+  double armature = 0.0;                            ///< Inertance [kg m², kg].
   std::optional<double> least_effort, most_effort;  ///< Of all its actuators [N m, N].
   std::optional<RobotMimic> mimic;
 

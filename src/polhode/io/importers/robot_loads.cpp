@@ -4,7 +4,42 @@
 #include <cmath>
 #include <numbers>
 
+#include <polhode/core/format.hpp>
+
 namespace polhode::io {
+
+namespace {
+
+/// Squares and cubes of a joint's spring and damper, as a load of their own.
+void put_laws(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
+              double turns, SourceNode& loads) {
+  const auto is_there = [](const std::array<double, 2>& law) {
+    return law[0] != 0.0 || law[1] != 0.0;
+  };
+  if (!is_there(joint.spring_law) && !is_there(joint.damper_law)) return;
+  const bool angle = joint.turns();
+  SourceNode load = make.map();
+  make.put(load, "type", make.text(angle ? "torsional_spring" : "translational_spring"));
+  make.put(load, "joint", make.text(name));
+  const std::string kind = angle ? "moment" : "force";
+  const auto expression = [&](const std::string& text) {
+    SourceNode node = make.text(text);
+    node.in_quotes = true;
+    return node;
+  };
+  if (is_there(joint.spring_law)) {
+    make.put(load, "spring_" + kind,
+             expression(format("({})*x^2 + ({})*x^3", joint.spring_law[0], joint.spring_law[1])));
+    make.put(load, angle ? "free_angle" : "free_displacement", make.number(joint.law_rest - turns));
+  }
+  if (is_there(joint.damper_law))
+    make.put(
+        load, "damper_" + kind,
+        expression(format("({})*v*abs(v) + ({})*v^3", joint.damper_law[0], joint.damper_law[1])));
+  make.put(loads, name + "_law", std::move(load));
+}
+
+}  // namespace
 
 void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std::string& name,
                      double turns, SourceNode& loads) {
@@ -34,6 +69,7 @@ void put_joint_loads(const NodeBuilder& make, const RobotJoint& joint, const std
     make.put(push, "acts", make.text("compression"));
     make.put(loads, name + "_push", std::move(push));
   }
+  put_laws(make, joint, name, turns, loads);
   if (joint.armature == 0.0) return;
   SourceNode inerter = load_on_joint(angle ? "rotary_inerter" : "linear_inerter");
   make.put(inerter, "inertance", make.number(joint.armature));

@@ -48,9 +48,11 @@ bool RobotMeshes::write(const RobotShape& shape, const NodeBuilder& make, Source
   }
   std::string ending = std::filesystem::path(*path).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (ending != ".stl" && ending != ".obj" && ending != ".msh") {
-    const std::string what = format("the mesh {} is not read, as there is no reader of {} files",
-                                    quote(shape.file), ending);
+  if (ending != ".stl" && ending != ".obj" && ending != ".msh" && ending != ".dae") {
+    const std::string what =
+        format("the mesh {} is not read, as {}", quote(shape.file),
+               ending.empty() ? std::string("its name has no ending")
+                              : format("there is no reader of {} files", ending));
     if (options_.shapes == "collision")
       refuse(*shape.at, what, "Convert it to STL or OBJ.");
     else

@@ -12,6 +12,7 @@
 #include <polhode/io/importers/sdf_include.hpp>
 #include <polhode/io/importers/sdf_joints.hpp>
 #include <polhode/io/importers/sdf_links.hpp>
+#include <polhode/io/importers/sdf_state.hpp>
 #include <polhode/io/importers/write_robot.hpp>
 
 namespace polhode::io {
@@ -31,7 +32,7 @@ const Vec3 kWorldGravity(0.0, 0.0, -9.8);
 class SdfReader {
  public:
   SdfReader(XmlFile& xml, const ImportOptions& options, std::vector<ImportNote>& notes)
-      : xml_(xml), file_(xml, notes, options), frames_(file_) {}
+      : xml_(xml), file_(xml, notes, options), frames_(file_), state_(file_) {}
 
   Robot read(const std::string& folder) {
     const Element& root = xml_.root();
@@ -103,12 +104,13 @@ class SdfReader {
   void read_world(const Element& e, const Place& place) {
     robot_.name = xml_.text(e, "name").value_or("");
     robot_.gravity = file_.vector(e, "gravity").value_or(kWorldGravity);
+    state_.read(e);
     read_content(e, place);
     if (const Element* wind = xml_.child(e, "wind")) {
       const Vec3 v = file_.vector(*wind, "linear_velocity").value_or(Vec3::Zero());
       if (!v.isZero(0.0)) file_.refuse(*wind, "the world has wind", "Add loads of type drag.");
     }
-    file_.ignored.skip(e, {"physics", "scene", "light", "gui", "plugin", "state", "atmosphere",
+    file_.ignored.skip(e, {"physics", "scene", "light", "gui", "plugin", "atmosphere",
                            "magnetic_field", "spherical_coordinates", "audio", "actor", "road"});
     for (const Element* population : xml_.children(e, "population")) {
       xml_.skip(*population);
@@ -194,6 +196,7 @@ class SdfReader {
       is_static = file_.boolean(*include, "static", is_static);
       merged = merged || file_.flag(*include, "merge", false);
     }
+    if (place.scope == 0) state_.place(name, frame);
     place.is_static = place.is_static || is_static;
     const int number = frames_.add(std::move(frame), merged || alone ? "" : name);
     place.scope = frames_.add_scope(number, merged || alone);
@@ -260,7 +263,9 @@ class SdfReader {
       weld.origin = placed.back();
       robot_.joints.push_back(std::move(weld));
     }
+    state_.check(frames_);
     read_sdf_joints(file_, frames_, joints_, robot_);
+    state_.check(robot_.joints);
     refuse_taken_names();
     placed.resize(robot_.links.size());
     file_.ignored.add_unread();
@@ -284,6 +289,7 @@ class SdfReader {
   XmlFile& xml_;
   SdfFile file_;
   SdfFrames frames_;
+  SdfState state_;
   Robot robot_;
   std::vector<SdfLink> links_;
   std::vector<SdfJoint> joints_;

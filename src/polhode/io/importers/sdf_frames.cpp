@@ -99,6 +99,7 @@ void SdfFrames::connect() {
   local_state_.assign(frames_.size(), State::open);
   world_state_.assign(frames_.size(), State::open);
   world_state_[0] = local_state_[0] = State::known;
+  for (std::size_t i = 1; i < frames_.size(); ++i) static_cast<void>(in_world(static_cast<int>(i)));
 }
 
 int SdfFrames::base_of(int frame) {

@@ -35,6 +35,7 @@ class RobotReader {
                  "Give a URDF, which starts with <robot name=\"...\">.");
       return {};
     }
+    refuse_xacro(root);
     Robot robot;
     robot.name = xml_.text(root, "name").value_or("");
     ignored_.attributes(root, {"version"});
@@ -54,15 +55,47 @@ class RobotReader {
   }
 
  private:
+  /// An error about the first tag that xacro should have replaced. @returns whether there is one.
+  bool refuse_xacro(const Element& e) {
+    if (std::string_view(e.Name()).starts_with("xacro:")) {
+      xml_.fault(e, format("<{}> is a tag of xacro, which has not been expanded", e.Name()),
+                 "Expand the file by xacro, or call it .xacro.");
+      return true;
+    }
+    for (const Element* inner = e.FirstChildElement(); inner != nullptr;
+         inner = inner->NextSiblingElement())
+      if (refuse_xacro(*inner)) return true;
+    return false;
+  }
+
+  /// A child that stands at most once; null if there is none.
+  const Element* single(const Element& parent, const char* tag) {
+    const Element* e = xml_.child(parent, tag);
+    if (const Element* next = e == nullptr ? nullptr : e->NextSiblingElement(tag))
+      xml_.fault(*next, format("<{}> stands twice in <{}>", tag, parent.Name()),
+                 "Keep one of the two.");
+    return e;
+  }
+
   Pose read_origin(const Element& parent) {
-    const Element* e = xml_.child(parent, "origin");
+    const Element* e = single(parent, "origin");
     return e == nullptr ? Pose{} : read_pose(*e);
   }
 
   Pose read_pose(const Element& e) {
     Pose pose;
     if (const auto p = xml_.vector(e, "xyz")) pose.p = *p;
-    if (const auto rpy = xml_.vector(e, "rpy")) pose.R = rotation_of_rpy(*rpy);
+    const auto rpy = xml_.vector(e, "rpy");
+    if (rpy) pose.R = rotation_of_rpy(*rpy);
+    const auto q = xml_.numbers(e, "quat_xyzw", 4, 4);
+    if (!q) return pose;
+    const Eigen::Vector4d numbers(q->data());
+    const double largest = numbers.cwiseAbs().maxCoeff();
+    if (rpy || !(largest > 0.0))
+      xml_.fault(e, rpy ? "<origin> has both 'rpy' and 'quat_xyzw'" : "'quat_xyzw' has no length",
+                 rpy ? "Give one of the two." : "Write 0 0 0 1 for no rotation.");
+    else
+      pose.R = Quat(numbers / largest).normalized().toRotationMatrix();
     return pose;
   }
 
@@ -73,7 +106,7 @@ class RobotReader {
     ignored_.attributes(e, {"type"});
     if (!link.name.empty() && !links_.insert(link.name).second)
       xml_.fault(e, format("the link {} stands twice", quote(link.name)), "Rename one of them.");
-    if (const Element* inertial = xml_.child(e, "inertial")) read_inertial(*inertial, link);
+    if (const Element* inertial = single(e, "inertial")) read_inertial(*inertial, link);
     for (const char* tag : {"visual", "collision"})
       for (const Element* shape : xml_.children(e, tag))
         read_shape(*shape, tag == std::string_view("visual") ? link.visual : link.collision);
@@ -82,8 +115,8 @@ class RobotReader {
   }
 
   void read_inertial(const Element& e, RobotLink& link) {
-    const Element* mass = xml_.child(e, "mass");
-    const Element* inertia = xml_.child(e, "inertia");
+    const Element* mass = single(e, "mass");
+    const Element* inertia = single(e, "inertia");
     const Pose pose = read_origin(e);
     link.has_inertial = true;
     link.mass.com = pose.p;
@@ -118,7 +151,7 @@ class RobotReader {
     shape.pose = read_origin(e);
     ignored_.attributes(e, {"name"});
     ignored_.skip(e, {"material", "verbose", "contact_coefficients"});
-    const Element* geometry = xml_.child(e, "geometry");
+    const Element* geometry = single(e, "geometry");
     if (geometry == nullptr) {
       xml_.fault(e, format("<{}> has no <geometry>", e.Name()), "Add it, or leave the tag out.");
       return;
@@ -171,7 +204,7 @@ class RobotReader {
 
   /// @param needed  Whether the joint has an axis.
   Vec3 read_axis(const Element& parent, bool needed) {
-    const Element* e = xml_.child(parent, "axis");
+    const Element* e = single(parent, "axis");
     if (e == nullptr) return Vec3::UnitX();
     const auto axis = xml_.vector(*e, "xyz");
     if (!axis) return Vec3::UnitX();
@@ -206,13 +239,13 @@ class RobotReader {
     joint.axis = read_axis(e, joint.type != "fixed" && joint.type != "floating");
     if (types == kDrakeTypes) read_drake_joint(e, joint);
     read_limit(e, joint);
-    if (const Element* dynamics = xml_.child(e, "dynamics")) {
+    if (const Element* dynamics = single(e, "dynamics")) {
       joint.damping = has_damping(*dynamics, joint) ? not_negative(*dynamics, "damping") : 0.0;
       joint.friction = not_negative(*dynamics, "friction");
       if (joint.type == "fixed" && (joint.damping > 0.0 || joint.friction > 0.0))
         ignored_.add(*dynamics, "<dynamics> of a fixed joint", "has no influence on the motion");
     }
-    if (const Element* mimic = xml_.child(e, "mimic")) read_mimic(*mimic, joint);
+    if (const Element* mimic = single(e, "mimic")) read_mimic(*mimic, joint);
     ignored_.skip(e, {"calibration", "safety_controller", "gazebo", "hardwareInterface"});
     robot.joints.push_back(std::move(joint));
   }
@@ -252,8 +285,13 @@ class RobotReader {
   }
 
   void read_limit(const Element& e, RobotJoint& joint) {
-    const Element* limit = xml_.child(e, "limit");
-    if (limit == nullptr) return;
+    const Element* limit = single(e, "limit");
+    if (limit == nullptr) {
+      if (joint.type == "revolute" || joint.type == "prismatic")
+        notes_.push_back({ImportNote::Kind::approximated, xml_.place(e),
+                          format("the joint {} has no <limit>, and no stops", quote(joint.name))});
+      return;
+    }
     for (const char* unused : {"effort", "velocity", "acceleration", "deceleration", "jerk"})
       if (xml_.text(*limit, unused))
         ignored_.add(*limit, format("attribute '{}' of <limit>", unused),

@@ -51,6 +51,9 @@ class ModelWriter {
     name_all();
     contacts_.emplace(robot_, tree_, link_name_, xml_, out_.notes);
     SourceNode bodies = make.map(), joints = make.map(), loads = make.map();
+    links_of_.resize(robot_.links.size());
+    for (const int i : tree_.order)
+      links_of_[static_cast<std::size_t>(at(tree_.body, i))].push_back(i);
     for (const int i : tree_.order)
       if (at(tree_.body, i) == i) write_body(i, bodies);
     for (const int i : tree_.order)
@@ -150,8 +153,7 @@ class ModelWriter {
     }
     SourceNode shapes = make.list();
     if (options_.shapes != "none")
-      for (const int k : tree_.order)
-        if (at(tree_.body, k) == i) write_shapes(k, shapes);
+      for (const int k : at(links_of_, i)) write_shapes(k, shapes);
     if (!shapes.children.empty()) make.put(body, "shape", std::move(shapes));
     make.put(bodies, at(link_name_, i), std::move(body));
   }
@@ -479,6 +481,7 @@ class ModelWriter {
   RobotMeshes meshes_;
   std::optional<ContactWriter> contacts_;
   std::vector<std::string> link_name_;
+  std::vector<std::vector<int>> links_of_;  ///< Of each link that is a body, in order.
   std::map<std::string, std::string> joint_name_, actuator_name_;
   std::map<int, int> first_follower_;  ///< By leader that moves nothing.
 };

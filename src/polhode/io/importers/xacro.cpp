@@ -6,7 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdio>
+#include <memory>
 #include <vector>
 
 #include <polhode/core/format.hpp>
@@ -24,7 +27,23 @@ struct Said {
   int status = 0;
   bool too_long = false;
   std::string text;
+  std::string complaint;  ///< Last line that it writes to its standard error.
 };
+
+/// The last line of a file that is not empty, shortened.
+std::string last_line(std::FILE* file) {
+  constexpr std::size_t kMostBytes = 400;
+  std::string text(1 << 14, '\0');
+  if (std::fseek(file, 0, SEEK_END) != 0) return {};
+  const long end = std::ftell(file);
+  if (end <= 0) return {};
+  const long from = std::max(0L, end - static_cast<long>(text.size()));
+  if (std::fseek(file, from, SEEK_SET) != 0) return {};
+  text.resize(std::fread(text.data(), 1, text.size(), file));
+  text.erase(text.find_last_not_of(" \t\r\n") + 1);
+  const std::size_t start = text.find_last_of('\n');
+  return text.substr(start == std::string::npos ? 0 : start + 1, kMostBytes);
+}
 
 /// Runs a program and takes what it writes to its standard output.
 Said run_program(const std::vector<std::string>& words) {
@@ -36,6 +55,8 @@ Said run_program(const std::vector<std::string>& words) {
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_addclose(&actions, ends[0]);
   posix_spawn_file_actions_addclose(&actions, ends[1]);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> errors(std::tmpfile(), &std::fclose);
+  if (errors) posix_spawn_file_actions_adddup2(&actions, ::fileno(errors.get()), STDERR_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
@@ -58,6 +79,7 @@ Said run_program(const std::vector<std::string>& words) {
   if (said.ran)
     while (::waitpid(child, &said.status, 0) < 0 && errno == EINTR) {
     }
+  if (errors) said.complaint = last_line(errors.get());
   return said;
 }
 
@@ -79,8 +101,10 @@ std::string expanded_by_xacro(const std::string& file,
                       "Build a model of this size in code.");
     if (WIFEXITED(said.status) && WEXITSTATUS(said.status) == 0) return said.text;
     if (program.size() > 1 || (WIFEXITED(said.status) && WEXITSTATUS(said.status) != 127))
-      throw FileError(file, "xacro is missing or failed",
-                      "Install the Python package xacro, or expand the file and give the URDF.");
+      throw FileError(
+          file,
+          "xacro is missing or failed" + (said.complaint.empty() ? "" : ": " + said.complaint),
+          "Install the Python package xacro, or expand the file and give the URDF.");
   }
   throw FileError(file, "needs xacro, which is not there",
                   "Install the Python package xacro, or expand the file and give the URDF.");

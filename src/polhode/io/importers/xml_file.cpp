@@ -8,6 +8,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/io/importers/xml_parts.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 namespace polhode::io {
@@ -56,17 +57,47 @@ XmlFile::XmlFile(std::shared_ptr<const SourceText> source, Diagnostics& diagnost
   }
   if (text.find('\0') != std::string::npos || !is_utf8(text))
     refuse(1, "the text is not UTF-8", "Save the file as UTF-8.");
-  if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    const bool deep = document_->ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED;
-    std::string name = tinyxml2::XMLDocument::ErrorIDToName(document_->ErrorID());
+  const auto refuse_text = [&](const tinyxml2::XMLDocument& document) {
+    std::string name = tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID());
     for (char& c : name) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));
     if (name.starts_with("xml error ")) name.erase(0, 10);
-    refuse(std::max(1, document_->ErrorLineNum()),
-           deep ? format("tags are nested more than {} deep", TINYXML2_MAX_ELEMENT_DEPTH)
-                : "the text is not XML: " + name,
-           deep
-               ? "No model needs that; look for a tag that is not closed."
-               : "Check the tag here and those above: each must be closed, and the file complete.");
+    refuse(std::max(1, document.ErrorLineNum()), "the text is not XML: " + name,
+           "Check the tag here and those above: each must be closed, and the file complete.");
+  };
+  if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    if (document_->ErrorID() != tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) refuse_text(*document_);
+    const int line = std::max(1, document_->ErrorLineNum());
+    const auto parts = xml_parts(text);
+    if (!parts)
+      refuse(line, format("tags are nested more than {} deep", kDeepestXml),
+             "No model needs that; look for a tag that is not closed.");
+    parts_.push_back(source_);
+    std::vector<bool> used(parts->size(), false);
+    const std::function<void(tinyxml2::XMLNode&)> graft = [&](tinyxml2::XMLNode& parent) {
+      for (tinyxml2::XMLNode* node = parent.FirstChild(); node != nullptr;
+           node = node->NextSibling()) {
+        Element* e = node->ToElement();
+        if (e == nullptr) continue;
+        if (std::string_view(e->Name()) == kPartTag) {
+          const auto number = static_cast<std::size_t>(std::max(0, e->IntAttribute("number", 0)));
+          if (number == 0 || number >= parts->size() || used[number])
+            refuse(e->GetLineNum(), format("the tag <{}> is not allowed", kPartTag), "Remove it.");
+          used[number] = true;
+          tinyxml2::XMLDocument part;
+          if (part.Parse((*parts)[number].data(), (*parts)[number].size()) != tinyxml2::XML_SUCCESS)
+            refuse_text(part);
+          tinyxml2::XMLNode* copy =
+              parent.InsertAfterChild(node, part.RootElement()->DeepClone(document_.get()));
+          locate_part(*copy, *part.RootElement());
+          parent.DeleteChild(node);
+          node = copy;
+        }
+        graft(*node);
+      }
+    };
+    if (document_->Parse(parts->front().data(), parts->front().size()) != tinyxml2::XML_SUCCESS)
+      refuse_text(*document_);
+    graft(*document_);
   }
   root_ = document_->RootElement();
   if (root_ == nullptr) refuse(1, "the file has no tag", "Give a file with a model.");
@@ -114,6 +145,16 @@ void XmlFile::locate(const tinyxml2::XMLNode& copy, const tinyxml2::XMLNode& ori
   const auto* below = original.FirstChild();
   for (const auto* node = copy.FirstChild(); node != nullptr; node = node->NextSibling()) {
     locate(*node, *below, line);
+    below = below->NextSibling();
+  }
+}
+
+void XmlFile::locate_part(const tinyxml2::XMLNode& copy, const tinyxml2::XMLNode& original) {
+  if (copy.ToElement() != nullptr)
+    included_[copy.ToElement()] = {original.GetLineNum(), 0, original.GetLineNum()};
+  const auto* below = original.FirstChild();
+  for (const auto* node = copy.FirstChild(); node != nullptr; node = node->NextSibling()) {
+    locate_part(*node, *below);
     below = below->NextSibling();
   }
 }

@@ -91,6 +91,8 @@ class XmlFile {
                                 tinyxml2::XMLDocument& part);
   /// Notes where the copy of a part of the last included file is from.
   void locate(const tinyxml2::XMLNode& copy, const tinyxml2::XMLNode& original, int line);
+  /// Notes where the copy of a part of the file itself is from.
+  void locate_part(const tinyxml2::XMLNode& copy, const tinyxml2::XMLNode& original);
   std::optional<std::vector<double>> numbers_in(const Element& element, const std::string& what,
                                                 const std::string& text, std::size_t least,
                                                 std::size_t most);

@@ -94,7 +94,9 @@ std::size_t SourceText::offset(int line_number) const {
 
 std::string_view SourceText::line(int number) const {
   const std::size_t start = offset(number);
-  const std::size_t end = std::min(text_.find('\n', start), text_.size());
+  const auto next = static_cast<std::size_t>(std::max(number, 0));
+  const std::size_t end =
+      next < line_starts_.size() && number > 0 ? line_starts_[next] - 1 : text_.size();
   return std::string_view(text_).substr(start, end - start);
 }
 
