@@ -69,11 +69,15 @@ TriangleSurface convex_hull(std::string_view where, std::span<const Vec3> points
 
   std::vector<Face> faces = first_tetrahedron(where, points, size);
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    const auto is_below = [&](const Face& f) {
+      return f.normal.dot(points[i]) - f.offset <= kOnHull * size;
+    };
+    if (std::all_of(faces.begin(), faces.end(), is_below)) continue;
     std::vector<Face> kept;
     // directed edges of the faces visible from the point
     std::map<std::pair<int, int>, int> border;
     for (const Face& f : faces) {
-      if (f.normal.dot(points[i]) - f.offset <= kOnHull * size) {
+      if (is_below(f)) {
         kept.push_back(f);
         continue;
       }
