@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/importers/robot_meshes.hpp>
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include <polhode/core/error.hpp>
@@ -16,6 +18,20 @@ namespace polhode::io {
 namespace {
 
 using NoteKind = ImportNote::Kind;
+
+/// Four of many points, each the one farthest from those before it: they lie in a plane if all do.
+std::vector<Vec3> spread(const std::vector<Vec3>& points) {
+  if (points.size() < 4) return points;
+  const auto farthest = [&](auto&& measure) {
+    return *std::max_element(points.begin(), points.end(),
+                             [&](const Vec3& x, const Vec3& y) { return measure(x) < measure(y); });
+  };
+  const Vec3 a = points.front();
+  const Vec3 b = farthest([&](const Vec3& x) { return (x - a).squaredNorm(); });
+  const Vec3 c = farthest([&](const Vec3& x) { return (x - a).cross(b - a).squaredNorm(); });
+  const Vec3 n = (b - a).cross(c - a);
+  return {a, b, c, farthest([&](const Vec3& x) { return std::abs(n.dot(x - a)); })};
+}
 
 SourceNode quoted(const NodeBuilder& make, const std::string& text) {
   SourceNode node = make.text(text);
@@ -76,8 +92,10 @@ bool RobotMeshes::write(const RobotShape& shape, const NodeBuilder& make, Source
            format("the mesh {} is replaced by its convex hull, as {}", quote(shape.file), reason));
     std::vector<Vec3> corners = surface.points;
     for (Vec3& x : corners) x = x.cwiseProduct(shape.scale);
+    // A hull of the file is made by the model, and here only for its errors, of four points.
     const geometry::TriangleSurface hull =
-        reason.empty() ? geometry::TriangleSurface{} : geometry::convex_hull(shape.file, corners);
+        reason.empty() ? geometry::TriangleSurface{}
+                       : geometry::convex_hull(shape.file, uniform ? spread(corners) : corners);
     SourceNode given = make.map();
     if (uniform) {
       make.put(given, "file", quoted(make, relative(*path)));
