@@ -157,7 +157,8 @@ def gradient(
 
     of:         an outcome, or several: "bodies.rod.position.x@end", "probes.tip.vx@max", "joints.A.rz@mean",
                 "bodies.rod.velocity.z@0.25" at a time [s] at which a fixed step ends; automatic ones end there.
-                Without @ the end.
+                Also "@min", "@integral"; without @ the end. "misfit:table.csv": the sum of the squares of the
+                differences from measured values, in a table with the columns "t [s]" and channels.
     wrt:        parameters by path, as overrides: "bodies.rod.mass", "variables.L", "joints.A.at.0".
     forward:    tangents of all parameters instead of the adjoint of each outcome: the same numbers. None: if there
                 are more outcomes than parameters.

@@ -2,6 +2,7 @@
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/io/read/gradient_parameter.hpp>
 #include <polhode/io/read/model_places.hpp>
+#include <polhode/io/read/read_outcome.hpp>
 
 #include "engine.hpp"
 
@@ -25,7 +26,7 @@ Differentiated gradient_of(const io::ModelText& source, const std::vector<std::s
   d.request.weights = weights;
   for (const std::string& path : wrt)
     d.request.parameters.push_back(io::gradient_parameter(source, path));
-  for (const std::string& outcome : of) d.request.outcomes.push_back(parse_outcome(outcome));
+  for (const std::string& outcome : of) d.request.outcomes.push_back(io::read_outcome(outcome));
   d.run = located(io::ModelPlaces(model), [&] { return differentiate(model, d.request); });
   if (!bars) return d;
   d.bars = error_bars(d.run, differentiate_halves(model, d.request, d.run));

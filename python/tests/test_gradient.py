@@ -2,6 +2,7 @@
 """Gradients of runs."""
 
 import math
+import pathlib
 
 import numpy as np
 import pytest
@@ -19,6 +20,18 @@ def test_gradient_of_a_throw_is_its_closed_form() -> None:
     assert g.value == pytest.approx(1 + 4 * 0.5 - 9.81 * 0.125)
     assert g.elasticity["gravity.2"] == pytest.approx(-9.81 * 0.125 / g.value)
     assert "by gravity.2: 0.125" in repr(g)
+
+
+def test_gradients_of_integrals_and_misfits_are_their_closed_forms(tmp_path: pathlib.Path) -> None:
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": "0.5 s", "step": "10 ms"})
+    m.add_body("ball", mass=2, inertia=[1, 1, 1], position=[0, 0, 1], velocity=[3, 0, 4])
+    table = tmp_path / "table.csv"
+    table.write_text("t [s],bodies.ball.position.x [m]\n0.25,0.7\n0.5,1.4\n")
+    integral, misfit = polhode.gradient(m, ["bodies.ball.position.x@integral", f"misfit:{table}"],
+                                        "bodies.ball.velocity.0")
+    assert integral.unit == "m s" and integral.by["bodies.ball.velocity.0"] == pytest.approx(0.125, abs=1e-11)
+    assert misfit.value == pytest.approx(0.05**2 + 0.1**2)
+    assert misfit.by["bodies.ball.velocity.0"] == pytest.approx(2 * (0.05 * 0.25 + 0.1 * 0.5), abs=1e-11)
 
 
 def test_gradient_is_that_of_differences_of_runs(pendulum: polhode.Model) -> None:

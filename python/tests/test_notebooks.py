@@ -25,6 +25,6 @@ def test_notebook_runs(path: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: 
 
 
 def test_there_is_a_notebook_for_each_topic() -> None:
-    assert len(NOTEBOOKS) == 8
+    assert len(NOTEBOOKS) == 10
     for path in NOTEBOOKS:
         assert json.loads(path.read_text())["nbformat"] == 4

@@ -34,6 +34,25 @@ TEST_F(CommandLine, PrintsGradientsAsJson) {
   }
 }
 
+TEST_F(CommandLine, PrintsGradientsOfIntegralsAndMisfits) {
+  write("throw.yaml",
+        "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+        "  ball: {mass: 1, inertia: [1, 1, 1], position: [0, 0, 1], velocity: [3, 0, 2]}\n"
+        "analysis: {duration: 0.5 s, step: 10 ms}\n");
+  write("table.csv", "t [s],bodies.ball.position.x [m]\n0.5,1.4\n");
+  const auto by_speed = [&](const std::string& of) {
+    return run({"gradient", "throw.yaml", "--no-bars", "--json", "--of", of, "--with",
+                "bodies.ball.velocity.0"});
+  };
+  const auto integral = by_speed("bodies.ball.position.x@integral");
+  EXPECT_EQ(integral.code, 0) << integral.err;
+  EXPECT_NEAR(std::stod(value(integral.out, "gradient")), 0.125, 1e-11);
+  const auto misfit = by_speed("misfit:table.csv");
+  EXPECT_EQ(misfit.code, 0) << misfit.err;
+  EXPECT_NEAR(std::stod(value(misfit.out, "gradient")), 2.0 * 0.1 * 0.5, 1e-11);
+  EXPECT_EQ(by_speed("misfit:nothing.csv").code, 5);
+}
+
 TEST_F(CommandLine, SaysThatTheSequenceOfAutomaticStepsIsFrozen) {
   write("swing.yaml",
         "format: 1\nbodies:\n"

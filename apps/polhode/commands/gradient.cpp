@@ -12,6 +12,7 @@
 #include <polhode/core/version.hpp>
 #include <polhode/gradient/gradient.hpp>
 #include <polhode/io/read/gradient_parameter.hpp>
+#include <polhode/io/read/read_outcome.hpp>
 
 #include "command.hpp"
 #include "console.hpp"
@@ -144,7 +145,8 @@ int show_gradient(GradientOptions& options) {
   GradientRequest request{.parameters = {}, .outcomes = {}, .forward = options.forward};
   for (const std::string& path : split_paths(options.with))
     request.parameters.push_back(io::gradient_parameter(source, path));
-  for (const std::string& outcome : options.of) request.outcomes.push_back(parse_outcome(outcome));
+  for (const std::string& outcome : options.of)
+    request.outcomes.push_back(io::read_outcome(outcome));
   const RunGradient run = differentiate(model, request);
   std::vector<std::vector<double>> bars;
   if (!options.no_bars) bars = error_bars(run, differentiate_halves(model, request, run));
@@ -173,8 +175,8 @@ Action add_gradient(CLI::App& command) {
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
   command
       .add_option("--of", options->of,
-                  "Outcome: CHANNEL@end, @mean, @max or @TIME, such as "
-                  "bodies.rod.position.x@end; may be repeated")
+                  "Outcome: CHANNEL@end, @mean, @integral, @max, @min or @TIME, such as "
+                  "bodies.rod.position.x@end, or misfit:TABLE; may be repeated")
       ->required()
       ->take_all()
       ->expected(1)

@@ -25,6 +25,9 @@ bool same(const JointSpec& a, const JointSpec& b) {
 bool same(const LoadSpec& a, const LoadSpec& b) {
   if (a.Z_a != b.Z_a || a.Z_b != b.Z_b || a.R_a != b.R_a || a.R_b != b.R_b ||
       a.parameters != b.parameters || a.words != b.words || !same(a.value, b.value) ||
+      !std::equal(
+          a.others.begin(), a.others.end(), b.others.begin(), b.others.end(),
+          [](const CoordinateSpec& x, const CoordinateSpec& y) { return x.factor == y.factor; }) ||
       a.vector.has_value() != b.vector.has_value() || a.laws.size() != b.laws.size() ||
       a.matrices.size() != b.matrices.size())
     return false;
@@ -81,7 +84,9 @@ ChangedItems changed_items(const Model& model, const System& system, const Model
     const LoadSpec& load = model.loads[l];
     if (map.load[l] < 0) continue;
     mark(map.load[l], !same(load, other_model.loads[l]) || moved(load.a) || moved(load.b) ||
-                          of_joint(load.joint) || of_joint(load.joint_2));
+                          of_joint(load.joint) || of_joint(load.joint_2) ||
+                          std::any_of(load.others.begin(), load.others.end(),
+                                      [&](const CoordinateSpec& q) { return of_joint(q.joint); }));
   }
   for (std::size_t i = 0; i < known.size(); ++i)
     if (!known[i]) changed.interactions[i] = 1;

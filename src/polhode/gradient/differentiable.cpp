@@ -16,7 +16,7 @@ namespace {
 
 /// Loads whose step seen backwards is the same step, and whose memory is a function of the motion
 /// or of the start alone: each has a test against differences of runs.
-constexpr std::array<std::string_view, 16> kDifferentiable = {"force",
+constexpr std::array<std::string_view, 25> kDifferentiable = {"force",
                                                               "moment",
                                                               "spring_damper",
                                                               "potential",
@@ -24,13 +24,22 @@ constexpr std::array<std::string_view, 16> kDifferentiable = {"force",
                                                               "vector_damper",
                                                               "bushing",
                                                               "attraction",
+                                                              "gravity_gradient",
                                                               "drag",
+                                                              "axis_drag",
+                                                              "rotor",
                                                               "torsional_spring",
                                                               "translational_spring",
                                                               "rotary_motor",
                                                               "linear_motor",
+                                                              "rotary_inerter",
+                                                              "linear_inerter",
                                                               "gear",
                                                               "screw",
+                                                              "coupling",
+                                                              "point_on_surface",
+                                                              "point_on_curve",
+                                                              "curve_on_curve",
                                                               "rolling"};
 
 [[noreturn]] void refuse_gradient(const std::string& where, const std::string& what,
@@ -174,6 +183,10 @@ void require_differentiable(const Model& model, const System& system) {
                       "Leave the relaxation time of its section out");
   for (const JointSpec& joint : model.joints) check_joint(joint, by_rows);
   for (const LoadSpec& load : model.loads) check_load(load);
+  if (!system.nodes().empty())
+    refuse_gradient("the model",
+                    "has nodes of solids, cables or beams, which have no derivative yet",
+                    "Use rigid bodies, and beams without loads along them");
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionTraits& traits = system.traits(ref);
     if (!traits.set_valued && !traits.has_barrier && !traits.compliant) continue;

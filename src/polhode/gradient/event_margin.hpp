@@ -17,8 +17,14 @@ class EventMargin {
   [[nodiscard]] double value(const System& system, const State& state) const {
     return sign_ * (reader_.value(system, state) - level_);
   }
-  [[nodiscard]] Vec by_state(const System& system, const State& state) const {
-    return sign_ * reader_.by_state(system, state);
+  /// Derivative of the value, but for its sign(). @see OutcomeReader::slope()
+  [[nodiscard]] OutcomeSlope slope(const System& system, const State& state) const {
+    return reader_.slope(system, state);
+  }
+  [[nodiscard]] double sign() const { return sign_; }
+  /// The value without a projection of the velocities.
+  [[nodiscard]] double value_there(const System& system, const State& state) const {
+    return sign_ * (reader_.value_there(system, state) - level_);
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Sparse>
 
@@ -30,6 +31,9 @@ constexpr double kUnsolved = 1e-8;
 /// Remainder for ρ∞ < 1, where forces of redundant rows move the bodies a little, which leaves 1e-8
 /// to 1e-7 at long steps.
 constexpr double kUnsolvedDamped = 1e-5;
+/// Change of an outcome by a thousandth of the parameters, over the size of such outcomes, that is
+/// rounding.
+constexpr double kNoEffect = 1e-12;
 /// Difference of times, as a part of the step, within which they are equal.
 constexpr double kSameInstant = 1e-6;
 
@@ -62,31 +66,68 @@ std::vector<Place> places_of(const Outcome& outcome, const OutcomeReader& reader
           simulation.model().analysis.step ? "Name a multiple of analysis.step within the run"
                                            : "Name a time within the run");
     }
-    case Outcome::At::mean: {
-      if (reader.of_velocity())
-        throw InputError("the outcome", format("'{}' is a mean of velocities", outcome.text),
+    case Outcome::At::mean:
+    case Outcome::At::integral: {
+      const char* kind = outcome.at == Outcome::At::mean ? "a mean" : "an integral";
+      if (reader.of_velocity() && tape.located())
+        throw InputError("the outcome",
+                         format("'{}' is {} of velocities, which jump", outcome.text, kind),
                          "Use the position at the end, which is the mean times the duration");
+      const double unit = outcome.at == Outcome::At::mean ? t(last) - t(0) : 1.0;
       std::vector<Place> list;
       for (std::size_t k = 0; k <= last; ++k) {
         const double before = k > 0 ? t(k) - t(k - 1) : 0.0;
         const double after = k < last ? t(k + 1) - t(k) : 0.0;
-        list.push_back({k, 0.5 * (before + after) / (t(last) - t(0))});
+        list.push_back({k, 0.5 * (before + after) / unit});
       }
       return list;
     }
     case Outcome::At::maximum:
+    case Outcome::At::minimum:
+    case Outcome::At::misfit:
       break;
   }
   // At the maximum the derivative by its time is zero.
+  const double sign = outcome.at == Outcome::At::minimum ? -1.0 : 1.0;
   std::size_t at = 0;
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k <= last; ++k) {
-    const double value = reader.value(simulation.system(), tape.ends[k]);
+    const double value = sign * reader.value(simulation.system(), tape.ends[k]);
     if (value <= most) continue;
     most = value;
     at = k;
   }
   return {{at, 1.0}};
+}
+
+/// A value of a channel that an outcome consists of.
+struct Part {
+  Outcome outcome;
+  std::size_t of = 0;                ///< The outcome of the request.
+  std::optional<double> measured{};  ///< Of a misfit.
+};
+
+/// Unit of an outcome of one part.
+std::string unit_of(const Outcome& outcome, const OutcomeReader& reader) {
+  const std::string& unit = reader.unit();
+  if (outcome.at != Outcome::At::integral) return unit;
+  return unit.ends_with("/s") ? unit.substr(0, unit.size() - 2) : unit + " s";
+}
+
+/// Parts of all outcomes, several of a misfit.
+std::vector<Part> parts_of(const std::vector<Outcome>& outcomes) {
+  std::vector<Part> parts;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    if (outcomes[k].at != Outcome::At::misfit) parts.push_back({outcomes[k], k});
+    for (const Measured& m : outcomes[k].measured)
+      parts.push_back({{.text = format("{}@{:.9g}", m.channel, m.time),
+                        .channel = m.channel,
+                        .at = Outcome::At::time,
+                        .time = m.time},
+                       k,
+                       m.value});
+  }
+  return parts;
 }
 
 /// Factors that give the numbers of a state comparable sizes.
@@ -109,26 +150,29 @@ class Differentiation {
         model_(simulation.model()),
         tape_(tape),
         request_(request),
+        parts_(parts_of(request.outcomes)),
         derivative_(simulation, tape),
         scales_(state_scales(system_, model_.analysis.duration, derivative_.state_size())) {
-    readers_ = readers_of(model_, map, request.outcomes);
+    std::vector<Outcome> outcomes;
+    for (const Part& part : parts_) outcomes.push_back(part.outcome);
+    readers_ = readers_of(model_, map, outcomes);
     for (std::size_t k = 0; k < readers_.size(); ++k)
-      places_.push_back(places_of(request.outcomes[k], readers_[k], simulation, tape));
+      places_.push_back(places_of(outcomes[k], readers_[k], simulation, tape));
     for (const GradientParameter& parameter : request.parameters)
-      shifts_.emplace_back(parameter, simulation, map, request.outcomes);
+      shifts_.emplace_back(parameter, simulation, map, outcomes);
   }
 
   std::vector<OutcomeGradient> compute() {
     const std::size_t n = shifts_.size();
     const bool added_up = !request_.weights.empty();
-    gradients_.resize(added_up ? 1 : readers_.size());
+    gradients_.resize(added_up ? 1 : request_.outcomes.size());
     weights_.resize(gradients_.size());
     for (std::size_t k = 0; k < readers_.size(); ++k)
       if (added_up)
-        find_weights(k, 0, request_.weights[k]);
+        find_weights(k, 0, request_.weights[parts_[k].of]);
       else
-        find_weights(k, k, 1.0);
-    if (added_up) merge_weights();
+        find_weights(k, parts_[k].of, 1.0);
+    for (std::vector<Weight>& list : weights_) merge(list);
     start_ = Mat::Zero(derivative_.state_size(), static_cast<Eigen::Index>(n));
     for (std::size_t j = 0; j < n; ++j) {
       const Vec start = shifts_[j].start_derivative(system_, tape_.ends.front());
@@ -146,45 +190,64 @@ class Differentiation {
     Vec by_state;
   };
 
-  /// Value, explicit derivative by parameters and weights on states of outcome k, which is added
-  /// with a factor to what is differentiated.
+  /// Value, explicit derivative by parameters and weights on states of part k, which is added with
+  /// a factor to what is differentiated.
   void find_weights(std::size_t k, std::size_t into, double factor) {
     OutcomeGradient& g = gradients_[into];
     const bool added_up = !request_.weights.empty();
-    g.outcome = added_up ? "weighted sum" : request_.outcomes[k].text;
-    g.unit = added_up ? "" : readers_[k].unit();
+    const Part& part = parts_[k];
+    g.outcome = added_up ? "weighted sum" : request_.outcomes[part.of].text;
+    g.unit = added_up || part.measured ? "" : unit_of(part.outcome, readers_[k]);
     g.by.resize(shifts_.size(), 0.0);
     if (factor == 0.0) return;
     std::vector<double> values;
     for (const Place& place : places_[k]) {
       const State& state = tape_.ends[place.state];
-      const double weight = factor * place.weight;
       values.push_back(readers_[k].value(system_, state));
-      g.value += weight * values.back();
+      double weight = factor * place.weight;
+      if (part.measured) {
+        const double off = values.back() - *part.measured;
+        g.value += weight * off * off;
+        weight *= 2.0 * off;
+      } else {
+        g.value += weight * values.back();
+      }
       g.time = std::max(g.time, state.t);
       Vec by_state = Vec::Zero(derivative_.state_size());
-      by_state.head(kStateNumbers * system_.body_count()) =
-          weight * readers_[k].by_state(system_, state);
+      const OutcomeSlope slope = readers_[k].slope(system_, state);
+      by_state.head(kStateNumbers * system_.body_count()) = weight * slope.by_state;
       weights_[into].push_back({place.state, std::move(by_state)});
       for (std::size_t j = 0; j < shifts_.size(); ++j)
-        g.by[j] += weight * shifts_[j].of_value(k, state);
+        g.by[j] += weight * shifts_[j].of_value(k, slope);
     }
-    if (request_.outcomes[k].at == Outcome::At::mean && tape_.located())
-      add_weights_of_times(into, factor, values);
+    if (tape_.located() &&
+        (part.outcome.at == Outcome::At::mean || part.outcome.at == Outcome::At::integral))
+      add_weights_of_times(into, factor, part.outcome.at == Outcome::At::mean, values);
   }
 
-  /// A mean depends on the times of impacts as well, by the intervals beside them.
-  void add_weights_of_times(std::size_t into, double factor, const std::vector<double>& values) {
+  /// Means and integrals depend on the times of impacts and events as well, by the intervals beside
+  /// them, and on that of an event that ends the run.
+  void add_weights_of_times(std::size_t into, double factor, bool mean,
+                            const std::vector<double>& values) {
     std::vector<Weight>& list = weights_[into];
+    const std::size_t first = list.size() - values.size(), last = values.size() - 1;
+    const auto by_time = [&](std::size_t k) -> double& {
+      return list[first + k].by_state[derivative_.state_size() - 1];
+    };
     const double T = tape_.ends.back().t - tape_.ends.front().t;
-    for (std::size_t k = 1; k + 1 < values.size(); ++k)
-      list[list.size() - values.size() + k].by_state[derivative_.state_size() - 1] =
-          0.5 * factor / T * (values[k - 1] - values[k + 1]);
+    const double per = mean ? factor / T : factor;
+    for (std::size_t k = 1; k < last; ++k) by_time(k) = 0.5 * per * (values[k - 1] - values[k + 1]);
+    double of_all = 0.0;
+    for (std::size_t k = 0; mean && k <= last; ++k) {
+      const double before = k > 0 ? tape_.ends[k].t - tape_.ends[k - 1].t : 0.0;
+      const double after = k < last ? tape_.ends[k + 1].t - tape_.ends[k].t : 0.0;
+      of_all += 0.5 * (before + after) / T * values[k];
+    }
+    by_time(last) = per * (0.5 * (values[last - 1] + values[last]) - of_all);
   }
 
-  /// One weight for each state: the sum of those of all outcomes there.
-  void merge_weights() {
-    std::vector<Weight>& list = weights_.front();
+  /// One weight for each state: the sum of those of all parts there.
+  static void merge(std::vector<Weight>& list) {
     std::stable_sort(list.begin(), list.end(),
                      [](const Weight& a, const Weight& b) { return a.state < b.state; });
     std::vector<Weight> merged;
@@ -279,7 +342,8 @@ class Differentiation {
       }
       by[k] += start_.transpose() * mu[k];
       g.growth = first[k] > 0.0 ? most[k] / first[k] : 0.0;
-      double along = 0.0, size = 0.0, other = 0.0;
+      // A derivative that is zero but for rounding has no digits to compare.
+      double along = 0.0, size = kNoEffect * first[k], other = 0.0;
       for (Eigen::Index j = 0; j < d.size(); ++j) {
         along += by[k][j] * d[j];
         size += std::abs(by[k][j] * d[j]);
@@ -295,6 +359,7 @@ class Differentiation {
   const Model& model_;
   const RunTape& tape_;
   const GradientRequest& request_;
+  std::vector<Part> parts_;
   WholeStepDerivative derivative_;
   Vec scales_;
   std::vector<OutcomeReader> readers_;
@@ -313,7 +378,9 @@ std::vector<double> stops_of(const Model& model, const GradientRequest& request)
   bool over_run = false;
   for (const Outcome& outcome : request.outcomes) {
     if (outcome.at == Outcome::At::time) stops.push_back(outcome.time);
-    over_run = over_run || outcome.at == Outcome::At::mean || outcome.at == Outcome::At::maximum;
+    for (const Measured& m : outcome.measured) stops.push_back(m.time);
+    over_run = over_run || outcome.at == Outcome::At::mean || outcome.at == Outcome::At::integral ||
+               outcome.at == Outcome::At::maximum || outcome.at == Outcome::At::minimum;
   }
   if (over_run && model.output.every)
     for (double k = 1.0; k * *model.output.every < model.analysis.duration; ++k)

@@ -78,9 +78,10 @@ Vec WholeStepDerivative::by_length(const ByTime& times) {
 }
 
 Vec WholeStepDerivative::by_state(std::size_t step) const {
-  if (const int event = tape_.event_at(step + 1); event >= 0)
-    return tape_.margins[static_cast<std::size_t>(event)]->by_state(system_,
-                                                                    tape_.after(step, 0, 0));
+  if (const int event = tape_.event_at(step + 1); event >= 0) {
+    const EventMargin& margin = *tape_.margins[static_cast<std::size_t>(event)];
+    return margin.sign() * margin.slope(system_, tape_.after(step, 0, 0)).by_state;
+  }
   const InstantRow& row = *tape_.closing_at(step + 1);
   Vec by = Vec::Zero(single_.state_size());
   if (row.a != kGround) by.segment<6>(kStateNumbers * row.a) = row.by_a;
@@ -90,8 +91,10 @@ Vec WholeStepDerivative::by_state(std::size_t step) const {
 
 /// Derivative of the same by a parameter, at a fixed state.
 double WholeStepDerivative::of_end(ParameterShift& shift, std::size_t step) const {
-  if (const int event = tape_.event_at(step + 1); event >= 0)
-    return shift.of_margin(static_cast<std::size_t>(event), tape_.after(step, 0, 0));
+  if (const int event = tape_.event_at(step + 1); event >= 0) {
+    const auto e = static_cast<std::size_t>(event);
+    return shift.of_margin(e, tape_.margins[e]->slope(system_, tape_.after(step, 0, 0)));
+  }
   return shift.of_gap(*tape_.closing_at(step + 1), tape_.ends[step + 1]);
 }
 

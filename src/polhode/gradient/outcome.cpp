@@ -15,7 +15,7 @@ namespace polhode {
 
 namespace {
 
-/// Step of differences by the state, as a part of the mechanism's size, in radians, or of a speed.
+/// Step of differences by places, as a part of the mechanism's size or in radians.
 /// Its fourth power is the truncation error of order four, 1e-12; round-off is 1e-16 over it.
 constexpr double kStateStep = 1e-3;
 
@@ -61,16 +61,20 @@ Outcome parse_outcome(const std::string& text) {
   outcome.channel = text.substr(0, at);
   const std::string when = text.substr(at + 1);
   if (when == "end") return outcome;
-  if (when == "mean" || when == "max") {
-    outcome.at = when == "mean" ? Outcome::At::mean : Outcome::At::maximum;
-    return outcome;
-  }
+  for (const auto& [name, of_run] :
+       {std::pair("mean", Outcome::At::mean), std::pair("integral", Outcome::At::integral),
+        std::pair("max", Outcome::At::maximum), std::pair("min", Outcome::At::minimum)})
+    if (when == name) {
+      outcome.at = of_run;
+      return outcome;
+    }
   char* end = nullptr;
   outcome.time = std::strtod(when.c_str(), &end);
   if (when.empty() || *end != '\0' || !(outcome.time >= 0.0))
-    throw InputError("the outcome", format("'{}' has an unknown time '{}'", text, when),
-                     "Write CHANNEL@end, CHANNEL@mean, CHANNEL@max, or CHANNEL@0.25 with a time in "
-                     "seconds");
+    throw InputError(
+        "the outcome", format("'{}' has an unknown time '{}'", text, when),
+        "Write CHANNEL@end, CHANNEL@mean, CHANNEL@integral, CHANNEL@max, CHANNEL@min, or "
+        "CHANNEL@0.25 with a time in seconds");
   outcome.at = Outcome::At::time;
   return outcome;
 }
@@ -150,31 +154,35 @@ void OutcomeReader::set_number(const Model& model, const std::string& number) {
 }
 
 double OutcomeReader::value(const System& system, const State& state) const {
-  if (what_ == What::coordinate) {
-    const Joint& joint = joint_at(system, joint_);
-    const std::vector<std::string> names = joint.coordinate_names();
-    const auto found = std::find(names.begin(), names.end(), coordinate_);
-    if (found == names.end()) {
-      std::string known;
-      for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-      throw InputError("the outcome",
-                       format("joint '{}' has no coordinate '{}'", joint.name, coordinate_),
-                       known.empty() ? std::string("Name a position of a body")
-                                     : format("Its coordinates: {}", known));
-    }
-    const PairView view =
-        system.instant(state, system.interactions()[static_cast<std::size_t>(joint_)], nullptr);
-    return joint.coordinates(view.step()).value[static_cast<std::size_t>(found - names.begin())];
-  }
-  if (what_ == What::position) {
-    const BodyMotion m = system.motion(state, body_);
-    return (m.r + m.q * Z_)[component_];
-  }
+  if (!of_velocity()) return value_there(system, state);
   State projected = state;
   (void)project_velocities(system, projected);
-  const BodyMotion m = system.motion(projected, body_);
+  return value_there(system, projected);
+}
+
+double OutcomeReader::value_there(const System& system, const State& state) const {
+  if (what_ == What::coordinate) return coordinate(system, state);
+  const BodyMotion m = system.motion(state, body_);
+  if (what_ == What::position) return (m.r + m.q * Z_)[component_];
   const Vec3 omega = m.omega();
   return (what_ == What::turn ? omega : Vec3(m.v + omega.cross(m.q * Z_)))[component_];
+}
+
+double OutcomeReader::coordinate(const System& system, const State& state) const {
+  const Joint& joint = joint_at(system, joint_);
+  const std::vector<std::string> names = joint.coordinate_names();
+  const auto found = std::find(names.begin(), names.end(), coordinate_);
+  if (found == names.end()) {
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    throw InputError("the outcome",
+                     format("joint '{}' has no coordinate '{}'", joint.name, coordinate_),
+                     known.empty() ? std::string("Name a position of a body")
+                                   : format("Its coordinates: {}", known));
+  }
+  const PairView view =
+      system.instant(state, system.interactions()[static_cast<std::size_t>(joint_)], nullptr);
+  return joint.coordinates(view.step()).value[static_cast<std::size_t>(found - names.begin())];
 }
 
 std::vector<OutcomeReader> readers_of(const Model& model, const SystemMap& map,
@@ -187,48 +195,57 @@ std::vector<OutcomeReader> readers_of(const Model& model, const SystemMap& map,
   return readers;
 }
 
-Vec OutcomeReader::by_state(const System& system, const State& state) const {
+OutcomeSlope OutcomeReader::slope(const System& system, const State& state) const {
+  if (!of_velocity()) return {.by_state = by_state_there(system, state), .at = state};
+  ProjectionDerivative projection(system);
+  projection.linearize_velocities(state);
+  OutcomeSlope slope{.by_state = by_state_there(system, projection.projected()),
+                     .at = projection.projected()};
+  slope.by_inputs = projection.pull(slope.by_state);
+  slope.stages = projection.stages();
+  return slope;
+}
+
+/// Derivative by the state whose velocities are read as they are.
+Vec OutcomeReader::by_state_there(const System& system, const State& state) const {
+  if (what_ == What::coordinate) return coordinate_by_state(system, state);
   Vec by = Vec::Zero(kStateNumbers * system.body_count());
+  const BodyMotion m = system.motion(state, body_);
+  const Vec3 e = Vec3::Unit(component_), z = m.q * Z_, omega = m.omega();
+  const int at = kStateNumbers * body_;
   if (what_ == What::position) {
-    const BodyMotion m = system.motion(state, body_);
-    const Vec3 e = Vec3::Unit(component_);
-    by.segment<3>(kStateNumbers * body_) = e;
-    by.segment<3>(kStateNumbers * body_ + 3) = (m.q * Z_).cross(e);
-    return by;
-  }
-  std::vector<int> bodies;
-  int numbers = kStateNumbers;
-  if (what_ == What::coordinate) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(joint_)];
-    for (const int b : {ref.a, ref.b})
-      if (b != kGround) bodies.push_back(b);
-    numbers = 6;
+    by.segment<3>(at) = e;
+    by.segment<3>(at + 3) = z.cross(e);
+  } else if (what_ == What::turn) {
+    by.segment<3>(at + 3) = omega.cross(e);
+    by.segment<3>(at + 9) = m.q.conjugate() * e;
   } else {
-    for (int b = 0; b < system.body_count(); ++b) bodies.push_back(b);
+    by.segment<3>(at + 3) = omega.cross(z.cross(e)) + z.cross(e.cross(omega));
+    by.segment<3>(at + 6) = e;
+    by.segment<3>(at + 9) = m.q.conjugate() * z.cross(e);
   }
+  return by;
+}
+
+Vec OutcomeReader::coordinate_by_state(const System& system, const State& state) const {
+  Vec by = Vec::Zero(kStateNumbers * system.body_count());
+  const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(joint_)];
   State moved = state;
-  for (const int b : bodies) {
+  for (const int b : {ref.a, ref.b}) {
+    if (b == kGround) continue;
     const BodyMotion m = system.motion(state, b);
     const int slot = system.slot(b);
-    for (int i = 0; i < numbers; ++i) {
-      const double size = i < 3   ? system.length_scale()
-                          : i < 6 ? 1.0
-                          : i < 9 ? std::max(m.v.norm(), system.length_scale())
-                                  : std::max(m.W.norm(), 1.0);
-      const double d = kStateStep * size;
+    for (int i = 0; i < 6; ++i) {
+      const double d = kStateStep * (i < 3 ? system.length_scale() : 1.0);
       const auto at = [&](double x) {
         BodyMotion n = m;
         const Vec3 step = x * Vec3::Unit(i % 3);
         if (i < 3)
           n.r += step;
-        else if (i < 6)
-          n.q = (quaternion_from_rotation_vector(step) * m.q).normalized();
-        else if (i < 9)
-          n.v += step;
         else
-          n.W += step;
+          n.q = (quaternion_from_rotation_vector(step) * m.q).normalized();
         moved.set_motion(slot, n);
-        return value(system, moved);
+        return value_there(system, moved);
       };
       by[kStateNumbers * b + i] =
           (2.0 / 3.0 * (at(d) - at(-d)) - 1.0 / 12.0 * (at(2.0 * d) - at(-2.0 * d))) / d;

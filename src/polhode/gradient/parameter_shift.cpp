@@ -191,6 +191,27 @@ void ParameterShift::begin(const State& start) {
     }
     n.history = at.history;
   }
+  add_items_with_other_memories();
+}
+
+/// The start may differ in the memory of an item that is the same, as that of a gear whose bodies
+/// the assembly moves along.
+void ParameterShift::add_items_with_other_memories() {
+  ChangedItems changed;
+  changed.bodies.assign(static_cast<std::size_t>(system_->body_count()), 0);
+  changed.interactions.assign(system_->interactions().size(), 0);
+  for (const int b : bodies_) changed.bodies[static_cast<std::size_t>(b)] = 1;
+  for (const int i : interactions_) changed.interactions[static_cast<std::size_t>(i)] = 1;
+  bool more = false;
+  for (std::size_t i = 0; i < changed.interactions.size(); ++i) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const int size = system_->group(ref.group).traits(ref.item).history_size;
+    const auto first = [&](const Neighbour& n) { return n.history.begin() + ref.first_history; };
+    for (const Neighbour& n : at_)
+      if (!changed.interactions[i] && !std::equal(first(n), first(n) + size, first(at_[0])))
+        changed.interactions[i] = more = true;
+  }
+  if (more) set_items(*system_, changed);
 }
 
 bool ParameterShift::others_are_equal(const Trial& step, std::span<const BodyStep> steps) const {
@@ -278,9 +299,10 @@ void ParameterShift::commit(const Trial& step, std::span<const BodyStep> steps) 
   }
 }
 
-double ParameterShift::of_value(std::size_t outcome, const State& state) const {
-  return difference(
-      [&](const Neighbour& n) { return n.readers[outcome].value(n.simulation->system(), state); });
+double ParameterShift::of_value(std::size_t outcome, const OutcomeSlope& slope) {
+  return of_projection(slope) + difference([&](const Neighbour& n) {
+           return n.readers[outcome].value_there(n.simulation->system(), slope.at);
+         });
 }
 
 }  // namespace polhode

@@ -56,18 +56,19 @@ class ParameterShift {
   /// Derivative of the gap of a row at a fixed state, the end of the step to which the memories
   /// have been taken.
   [[nodiscard]] double of_gap(const InstantRow& row, const State& state);
-  /// Derivative of the margin of an event at a fixed state.
-  [[nodiscard]] double of_margin(std::size_t event, const State& state) const;
+  /// Derivative of the margin of an event at a fixed state. @param slope  Of the margin there.
+  [[nodiscard]] double of_margin(std::size_t event, const OutcomeSlope& slope);
   /// Switches off in the memories what is off in a state of the run.
   void follow_switches(const State& state);
-  /// Derivative of an outcome's value at a fixed state.
-  [[nodiscard]] double of_value(std::size_t outcome, const State& state) const;
+  /// Derivative of an outcome's value at a fixed state. @param slope  Of the value there.
+  [[nodiscard]] double of_value(std::size_t outcome, const OutcomeSlope& slope);
 
  private:
   struct Neighbour {
     std::unique_ptr<Simulation> simulation;
     std::unique_ptr<InstantRows> rows;        ///< From the first impact on.
     std::unique_ptr<InteractionSweep> sweep;  ///< Of the interactions that may differ.
+    std::unique_ptr<InteractionSweep> all;    ///< Of all, from the first projected velocity on.
     std::vector<double> history, residual;
     std::vector<std::vector<double>> kept;  ///< Memories at the start and behind each member.
     Vec terms;                              ///< Of a projection.
@@ -82,9 +83,12 @@ class ParameterShift {
   }
 
   void set_items(const System& system, const ChangedItems& changed);
+  void add_items_with_other_memories();
   /// Whether interactions that count as equal are so, bit for bit.
   [[nodiscard]] bool others_are_equal(const Trial& step, std::span<const BodyStep> steps) const;
   void keep_memories();
+  /// Derivative of a value by what its projection takes from the parameter.
+  [[nodiscard]] double of_projection(const OutcomeSlope& slope);
   /// The row of a neighbour.
   [[nodiscard]] InstantRow row_of(Neighbour& n, const InstantRow& row, const State& state) const;
   void evaluate(Neighbour& n, const State& from, const Trial& step,

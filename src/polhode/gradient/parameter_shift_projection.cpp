@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A parameter's neighbours in extrapolated steps and impacts: memories, projections and rows.
 #include <cmath>
+#include <numeric>
 
 #include <polhode/gradient/parameter_shift.hpp>
 
@@ -50,9 +51,23 @@ double ParameterShift::of_gap(const InstantRow& row, const State& state) {
   return (2.0 / 3.0 * (gaps[0] - gaps[1]) - 1.0 / 12.0 * (gaps[2] - gaps[3])) / step_;
 }
 
-double ParameterShift::of_margin(std::size_t event, const State& state) const {
-  return difference(
-      [&](const Neighbour& n) { return n.margins[event]->value(n.simulation->system(), state); });
+double ParameterShift::of_margin(std::size_t event, const OutcomeSlope& slope) {
+  return at_[0].margins[event]->sign() * of_projection(slope) + difference([&](const Neighbour& n) {
+           return n.margins[event]->value_there(n.simulation->system(), slope.at);
+         });
+}
+
+double ParameterShift::of_projection(const OutcomeSlope& slope) {
+  if (slope.stages.empty()) return 0.0;
+  std::vector<int> bodies(static_cast<std::size_t>(system_->body_count()));
+  std::iota(bodies.begin(), bodies.end(), 0);
+  const ProjectionStage& stage = slope.stages.front();
+  for (Neighbour& n : at_) {
+    const System& system = n.simulation->system();
+    if (!n.all) n.all = std::make_unique<InteractionSweep>(system);
+    stage_terms(system, stage, stage.at.history, bodies, *n.all, system_->mean_mass(), n.terms);
+  }
+  return difference([&](const Neighbour& n) { return slope.by_inputs.dot(n.terms); });
 }
 
 void ParameterShift::follow_switches(const State& state) {

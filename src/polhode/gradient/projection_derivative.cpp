@@ -160,6 +160,16 @@ void ProjectionDerivative::linearize(const State& given) {
   if (velocities.solves > 0) add_stage(at, true);
 }
 
+void ProjectionDerivative::linearize_velocities(const State& given) {
+  stages_.clear();
+  linear_.clear();
+  ties_.clear();
+  projected_ = given;
+  if (system_->rows() == 0) return;
+  add_stage(given, true);
+  jump(stages_.back().x);
+}
+
 void ProjectionDerivative::put_masses(const State& at, linear::KktValues& values) const {
   const double per_mass = 1.0 / system_->mean_mass();
   for (int b = 0; b < system_->body_count(); ++b) {
@@ -198,6 +208,7 @@ void ProjectionDerivative::add_stage(const State& at, bool velocities) {
       steps, instant_context(at.t), no_lambda.data(), at.history.data(),
       [&](int i, const PairStep& step, const PairTerms& t) {
         const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(i)];
+        if (ref.rows == 0) return;  // in a batch with others that have rows
         linear::KktValues::Pair& v =
             l.values.pairs[static_cast<std::size_t>(map_.pair[static_cast<std::size_t>(i)])];
         v.G_a = t.G_a;

@@ -54,6 +54,8 @@ class ProjectionDerivative {
 
   /// Projects a state, and factors the derivative.
   void linearize(const State& given);
+  /// Projects, instead of that, the velocities alone.
+  void linearize_velocities(const State& given);
   /// Projects, instead of that, the velocities of the bodies that joints tie to a row, which then
   /// jump by its impact, without friction. @param rows  Of the system.
   void linearize_impact(const State& given, InstantRows& rows, const InstantRow& row);

@@ -228,10 +228,10 @@ void StepDerivative::add_coupled_masses() {
   }
 }
 
-/// Force and moment of a body of which parts count. Below 1e6 roundings of the inertia a force says
+/// Force and moment of a body of which parts count. Below 8e6 roundings of the inertia a force says
 /// nothing.
 std::pair<double, double> StepDerivative::force_scales(const Trial& step, int b) const {
-  const double rounding = 1e6 * kIncrementRounding * 4.0 / (dt_ * dt_);
+  const double rounding = 8e6 * kIncrementRounding * 4.0 / (dt_ * dt_);
   const BodyData& body = system_->bodies()[static_cast<std::size_t>(b)];
   const int slot = system_->slot(b), lane = slot % kLanes;
   const TrialBlock& t = step.blocks[static_cast<std::size_t>(slot / kLanes)];
