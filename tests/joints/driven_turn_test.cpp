@@ -30,10 +30,10 @@ FrameMotion driven(Rotation rotation, const Eigen::Vector4d& parameters) {
 StepContext load_step(double from, double to) {
   StepContext c;
   c.ga = load_step_weights();
-  c.ga.delta = 1.0;
   c.dt = to - from;
   c.t_n = from;
   c.load_factor = to;
+  c.load_factor_n = from;
   return c;
 }
 

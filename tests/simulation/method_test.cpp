@@ -195,18 +195,6 @@ TEST(Method, SaysWhatItChoseAndWhy) {
               HasSubstr("Orders 4 to 12 by extrapolation with automatic steps, for the tolerance "
                         "of 1e-08: the model dissipates"));
   EXPECT_THAT(chosen(damped_chain(), tolerance).narration, testing::Not(HasSubstr("Warning")));
-  Model one_sided = damped_chain();
-  LoadSpec buffer;
-  buffer.name = "buffer";
-  buffer.type = "translational_spring";
-  buffer.words["acts"] = "compression";
-  one_sided.loads.push_back(buffer);
-  const auto kink = kink_of_forces(one_sided);
-  ASSERT_TRUE(kink.has_value());
-  EXPECT_EQ(kink->what, "'buffer' acts in compression only");
-  one_sided.loads.back() = {};
-  one_sided.loads.back().type = "rolling";  // not combined by extrapolation, but without a kink
-  EXPECT_FALSE(kink_of_forces(one_sided).has_value());
   Model rubbing = damped_chain();
   rubbing.joints.front().friction.emplace();
   EXPECT_THAT(chosen(rubbing, tolerance).narration,

@@ -114,6 +114,21 @@ output: {every: 1, hdf5: false, probes: {j: {joint: j}}}
 }
 
 // The motion of a chaotic triple pendulum: two runs diverge within seconds.
+TEST(Certify, TakesTheOrderOfAModelWithAContinuousController) {
+  const Certificate c = certify(io::read_model_text(
+      "format: 1\nbodies:\n  slider: {mass: 2, inertia: [1, 1, 1]}\n"
+      "joints:\n  rail: {type: prismatic, bodies: [ground, slider], at: [0, 0, 0], axis: x}\n"
+      "loads:\n  push: {type: joint_force, joint: rail, force: {controller: hold}}\n"
+      "controllers:\n  hold: {joint: rail, channel: z, setpoint: '0.1*step(t, 0.4)', "
+      "proportional: 800, derivative: 12}\n"
+      "analysis: {duration: 1 s, tolerance: 1e-5}\noutput: {every: 0.1 s, probes: {p: {body: "
+      "slider}}}\n",
+      "slider.yaml"));
+  EXPECT_TRUE(c.converges());
+  for (const CertifiedQuantity& q : c.quantities)
+    EXPECT_LE(q.report.largest_bar, 1e-3 * q.scale) << q.name();
+}
+
 TEST(Certify, ReportsWhenChaosEndsConvergence) {
   Model model = io::read_model_text(
       "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"

@@ -151,6 +151,10 @@ void Cable::evaluate(const PairStep& step, PairTerms& t) const {
   clear_ground_sides(step, t);
 }
 
+void Cable::pieces(const PairStep& step, ForcePieces& pieces) const {
+  if (spec_.tension_only) pieces.add(is_taut(measure(length(step))) ? 1.0 : 0.0);
+}
+
 Work Cable::work(const PairStep& step) const {
   const Stretch x = stretch(step);
   const double y = taut(measure(x.l_n1)), rate = x.ratio * x.rate;

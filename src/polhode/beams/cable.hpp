@@ -41,6 +41,8 @@ class Cable : public InteractionItem {
   [[nodiscard]] bool dissipates() const { return spec_.damping != 0.0; }
   [[nodiscard]] double coupled_mass() const { return spec_.coupled_mass; }
   [[nodiscard]] double reach() const { return 0.5 * spec_.free_length; }
+  [[nodiscard]] bool piecewise() const { return spec_.tension_only; }
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
 

@@ -239,6 +239,13 @@ ElementReport RunningCable::evaluate(const NodeStep& step, const double* history
   return {};
 }
 
+/// Taut or slack, and by span on its obstacle or straight.
+void RunningCable::pieces(const NodeStep& instant, const double*, ForcePieces& pieces) const {
+  const Course c = course(instant);
+  pieces.add(taut(c.n1) ? 1.0 : 0.0);
+  for (const int wound : c.wound_of) pieces.add(wound >= 0 ? 1.0 : 0.0);
+}
+
 void RunningCable::commit(const NodeStep& step, double* history, const double*) const {
   if (!friction_ || step.context.dt == 0.0) return;
   const Course c = course(step);

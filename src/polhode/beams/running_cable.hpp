@@ -74,6 +74,10 @@ class RunningCable : public ElementGroup {
   [[nodiscard]] std::size_t history_size() const override {
     return friction_ ? spec_.nodes.size() - 1 : 0;
   }
+  [[nodiscard]] bool piecewise() const override {
+    return (spec_.tension_only && spec_.stiffness > 0.0) || !spec_.windings.empty();
+  }
+  void pieces(const NodeStep& instant, const double* history, ForcePieces& pieces) const override;
   ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
                          const Mat3& turn, const ElementSink& sink) const override;
   void commit(const NodeStep& step, double* history, const double* scratch) const override;

@@ -100,6 +100,7 @@ JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
     f.stiffness = spec.stiffness.value_or(most > 0.0 ? most / way : 1.0);
     const double inertia = slides ? s.mass : s.inertia;
     f.damping = spec.damping.value_or(kBristleDamping * std::sqrt(f.stiffness * inertia));
+    f.inertia = slides ? s.mass : joint.type == "revolute" ? s.about_axis : s.inertia;
     r.friction = f;
   }
   if (slides && joint.limits)

@@ -13,7 +13,10 @@ struct StepContext {
   double dt = 0.0;           ///< Length of the step [s]; negative in stages of orders 4 to 8.
   bool conserving = true;    ///< Potentials in discrete-gradient form.
   double load_factor = 1.0;  ///< Factor of all loads and of gravity in statics. [-]
-  bool tangents = true;      ///< Tangents and G are needed; else only wrenches and values.
+  /// Statics: that of the last equilibrium [-], and the time that passes over the load step for
+  /// materials whose stress relaxes, infinite where they relax fully [s].
+  double load_factor_n = 1.0, relaxation_time = 0.0;
+  bool tangents = true;  ///< Tangents and G are needed; else only wrenches and values.
   /// Geometric stiffness from the stress stored in histories, not from that of the iterate:
   /// statics.
   bool mixed_point = false;

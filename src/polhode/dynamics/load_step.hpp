@@ -2,34 +2,25 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include <polhode/dynamics/body_step.hpp>
 
 namespace polhode {
 
 /// Weights of a load step, which leads from one equilibrium to the next: forces at its end, no
-/// rates of momentum, no velocities. δ has no other use there: it is the growth of the load
-/// factor over the step, by its length. Nor has ρ∞: it is the time that passes for materials whose
-/// stress relaxes, infinite where they relax fully.
+/// rates of momentum, no velocities.
 [[nodiscard]] inline GeneralizedAlpha load_step_weights() {
   GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
   ga.alpha_m = ga.kappa = ga.c = ga.c_A = ga.delta = 0.0;
-  ga.rho_inf = std::numeric_limits<double>::infinity();
   return ga;
 }
 
 /// Whether this is a load step: its increments are no velocities.
 [[nodiscard]] inline bool is_load_step(const StepContext& c) { return c.ga.kappa == 0.0; }
 
-/// Time that passes over a load step for materials whose stress relaxes [s]; 0 at an instant.
-[[nodiscard]] inline double memory_time(const StepContext& c) {
-  return is_load_step(c) ? c.ga.rho_inf : 0.0;
-}
-
 /// Load factor of the last equilibrium [-].
 [[nodiscard]] inline double load_factor_n(const StepContext& c) {
-  return is_load_step(c) ? c.load_factor - c.ga.delta * c.dt : c.load_factor;
+  return is_load_step(c) ? c.load_factor_n : c.load_factor;
 }
 
 /// Force of which the work over a step is made: forces of dynamics are means of the step; over a

@@ -160,6 +160,11 @@ void Joint::unilateral_rows(const PairStep& step, std::vector<UnilateralRow>& li
   with_view(step, [&](const Resistance::View& v) { resistance_->unilateral_rows(v, list); });
 }
 
+void Joint::pieces(const PairStep& step, ForcePieces& pieces) const {
+  if (resistance_)
+    with_view(step, [&](const Resistance::View& view) { resistance_->pieces(view, pieces); });
+}
+
 Work Joint::work(const PairStep& step) const {
   Work work;
   if (resistance_)

@@ -101,6 +101,8 @@ class Joint : public InteractionItem {
   [[nodiscard]] double reach() const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
+  [[nodiscard]] bool piecewise() const { return resistance_ && resistance_->data().friction; }
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const {
     return motion_ ? motion_->time_functions() : std::vector<TimeFunctionPtr>();
   }

@@ -84,16 +84,6 @@ std::optional<Resistance::Kind> Resistance::kind_of(const std::string& type) {
   return std::nullopt;
 }
 
-template <class What>
-void Resistance::for_limits(What&& what) const {
-  int memory = static_cast<int>(kNumbersOf<BristleMemory>);
-  if (data_.slide) {
-    if (!data_.slide->by_rows) what(*data_.slide, true, memory);
-    memory += static_cast<int>(kNumbersOf<StopMemory>);
-  }
-  if (data_.turn && !data_.turn->by_rows) what(*data_.turn, false, memory);
-}
-
 Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, const Coordinate& c,
                          int memory) const {
   CoordinateStep step{.at_n = c.at_n, .at_n1 = c.at_n1, .dt = v.step.context.dt};
@@ -287,6 +277,40 @@ Resistance::Bristle Resistance::bristle(const View& v, const Motion& m) const {
   return b;
 }
 
+Vec3 Resistance::rates(const View& v, const Configuration& q, const BodyStep& a,
+                       const BodyStep& b) const {
+  if (kind_ == Kind::spherical) return b.Lambda_n1 * b.W_n1 - a.Lambda_n1 * a.W_n1;
+  Vec3 rate = Vec3::Zero();
+  int count = 0;
+  if (kind_ == Kind::prismatic || kind_ == Kind::cylindrical)
+    rate[count++] = slide_rate(q, a, b, false);
+  if (kind_ == Kind::prismatic) return rate;
+  const double lever = kind_ == Kind::cylindrical ? data_.friction->radius : 1.0;
+  rate[count++] = lever * v.angle[0].rate_at_n1(a, b);
+  if (kind_ == Kind::universal) rate[count++] = v.angle[1].rate_at_n1(a, b);
+  return rate;
+}
+
+/// @eq{joint-friction-turn}
+Resistance::Bristle Resistance::left_bristle(const View& v, const Motion& m) const {
+  Bristle b = bristle(v, m);
+  const StepContext& c = v.step.context;
+  if (!b.slips || !(c.dt > 0.0) || is_load_step(c)) return b;
+  const JointFriction& f = *data_.friction;
+  const Vec3 before = rates(v, v.q_n, start_of(v.step.a), start_of(v.step.b)),
+             rate = rates(v, v.q_n1, v.step.a, v.step.b);
+  const Vec3 held = b.acting + f.inertia / (f.stiffness * c.dt) * (rate - before);
+  for (int k = 0; k < cones(); ++k) {
+    const Vec3 of_cone = cones() == 1 ? Vec3(Vec3::Ones()) : Vec3(Vec3::Unit(k));
+    const Vec3 old = b.at_n1.cwiseProduct(of_cone), wanted = held.cwiseProduct(of_cone);
+    if (!(rate.dot(old) < 0.0)) continue;
+    const double size = wanted.norm(), most = std::min(old.norm(), slip(v, k).force / f.stiffness);
+    b.at_n1 += (size > most ? most / size : 1.0) * wanted - old;
+    if (cones() == 1) b.slips = size > most;
+  }
+  return b;
+}
+
 void Resistance::add(const View& v, PairTerms& t) const {
   const PairStep& step = v.step;
   const bool tangents = step.context.tangents;
@@ -353,7 +377,7 @@ Work Resistance::work(const View& v) const {
   const Motion m = motion(v, false);
   const StepContext& context = v.step.context;
   if (data_.friction) {
-    const Bristle b = bristle(v, m);
+    const Bristle b = left_bristle(v, m);
     const double k = data_.friction->stiffness;
     w.stored += 0.5 * k * b.at_n1.squaredNorm();
     if (context.dt != 0.0)
@@ -397,7 +421,7 @@ void Resistance::initialize(double* memory) const {
 void Resistance::commit(const View& v, double* memory) const {
   const Motion m = motion(v, false);
   if (data_.friction) {
-    const Bristle b = bristle(v, m);
+    const Bristle b = left_bristle(v, m);
     BristleMemory after;
     set(after.bristle,
         kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n.transpose() * b.at_n1) : b.at_n1);

@@ -9,6 +9,7 @@
 #include <polhode/contact_laws/normal_law.hpp>
 #include <polhode/joints/parts/configuration.hpp>
 #include <polhode/joints/stop.hpp>
+#include <polhode/system/force_pieces.hpp>
 #include <polhode/system/free_coordinate.hpp>
 #include <polhode/system/pair_terms.hpp>
 #include <polhode/system/unilateral_row.hpp>
@@ -27,6 +28,7 @@ struct JointFriction {
   double constant = 0.0;   ///< Slip force [N] or moment [N m] without load.
   double stiffness = 1.0;  ///< Of the bristle [N/m]; for rotations alone [N m/rad].
   double damping = 0.0;    ///< Of the sticking bristle [N s/m], [N m s/rad].
+  double inertia = 0.0;    ///< Of the motion that it resists, reduced [kg] or [kg m²].
 };
 
 /// Stops of one free coordinate: barriers at both limits, or rows that only push; with restitution.
@@ -132,6 +134,9 @@ class Resistance {
   /// @param memory  Of the step whose forces these are.
   void add_stops(const View& view, const double* memory, Vec6& on_a, Vec6& on_b) const;
   [[nodiscard]] ResistanceReport report(const View& view) const;
+  /// Adds whether friction sticks, its direction after the last step, and whether it still opposes
+  /// the motion: one that has turned around in a step slips to its end.
+  void pieces(const View& view, ForcePieces& pieces) const;
 
  private:
   static constexpr int kMax = 3;
@@ -148,6 +153,12 @@ class Resistance {
   }
   [[nodiscard]] Slip slip(const View& view, int cone) const;
   [[nodiscard]] Bristle bristle(const View& view, const Motion& m) const;
+  /// The bristle over the step as it is left behind: after a turn of the motion without the
+  /// deflection of the old direction.
+  [[nodiscard]] Bristle left_bristle(const View& view, const Motion& m) const;
+  /// Rates of the coordinates including levers, of a ball in world axes, at an instant.
+  [[nodiscard]] Vec3 rates(const View& view, const Configuration& q, const BodyStep& a,
+                           const BodyStep& b) const;
   /// Calls what(limits, whether of the slide, its memory) for stops that are barriers.
   template <class What>
   void for_limits(What&& what) const;

@@ -30,6 +30,16 @@ struct Resistance::Motion {
 };
 
 template <class What>
+void Resistance::for_limits(What&& what) const {
+  int memory = static_cast<int>(kNumbersOf<BristleMemory>);
+  if (data_.slide) {
+    if (!data_.slide->by_rows) what(*data_.slide, true, memory);
+    memory += static_cast<int>(kNumbersOf<StopMemory>);
+  }
+  if (data_.turn && !data_.turn->by_rows) what(*data_.turn, false, memory);
+}
+
+template <class What>
 void Resistance::for_ends(What&& what) const {
   int entry = row_entry();
   const auto of = [&](const std::optional<JointLimits>& limits, bool slides) {

@@ -87,6 +87,17 @@ void AxisDrag::evaluate(const PairStep& step, PairTerms& t) const {
   clear_ground_sides(step, t);
 }
 
+/// Signs of the components with a quadratic part, whose second derivatives jump at zero.
+void AxisDrag::pieces(const PairStep& step, ForcePieces& pieces) const {
+  const PairDuals pair(step);
+  const Flow f = flow_of(step, pair, Z_b_);
+  for (int i = 0; i < 3; ++i) {
+    const DualVector e = pair.vector_b(R_b_.col(i)).mean(step.b.alpha_f);
+    if (quadratic_[i] != 0.0) pieces.add(dot(e, f.velocity).v > 0.0 ? 1.0 : 0.0);
+    if (quadratic_turning_[i] != 0.0) pieces.add(dot(e, f.turning).v > 0.0 ? 1.0 : 0.0);
+  }
+}
+
 Work AxisDrag::work(const PairStep& step) const {
   const PairDuals pair(step);
   const Flow f = flow_of(step, pair, Z_b_);

@@ -19,6 +19,10 @@ class AxisDrag : public InteractionItem {
 
   [[nodiscard]] bool conservative() const { return false; }
   [[nodiscard]] bool dissipates() const { return true; }
+  [[nodiscard]] bool piecewise() const {
+    return !quadratic_.isZero(0.0) || !quadratic_turning_.isZero(0.0);
+  }
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] and moment [N m] on b at its point.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <polhode/loads/bushing.hpp>
 
 namespace polhode {
@@ -150,6 +152,15 @@ void Bushing::evaluate(const PairStep& step, PairTerms& t) const {
       add_force_change(q, -force_a.row(k).transpose(), -force_b.row(k).transpose(), t);
   }
   clear_ground_sides(step, t);
+}
+
+bool Bushing::piecewise() const {
+  return std::ranges::any_of(law_, [](const ForceLaw& law) { return law.piecewise(); });
+}
+
+void Bushing::pieces(const PairStep& step, ForcePieces& pieces) const {
+  const Coordinates y = coordinates(step);
+  for (std::size_t k = 0; k < 6; ++k) law_[k].piece(y[k].at_n1, pieces);
 }
 
 double Bushing::energy(const Vec6& y) const {

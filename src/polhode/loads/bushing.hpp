@@ -23,6 +23,8 @@ class Bushing : public InteractionItem {
 
   [[nodiscard]] bool conservative() const { return C_.isZero(0.0); }
   [[nodiscard]] bool dissipates() const { return !C_.isZero(0.0); }
+  [[nodiscard]] bool piecewise() const;
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] and moment [N m] on b, at its point; displacement [m] and

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <numbers>
+
 #include <polhode/loads/drag.hpp>
 
 namespace polhode {
@@ -32,6 +34,11 @@ void Drag::evaluate(const PairStep& step, PairTerms& t) const {
         per_mass_ * af * (hat(J_n1 * omega) - J_n1 * hat(omega));
   }
   clear_ground_sides(step, t);
+}
+
+void Drag::pieces(const PairStep& step, ForcePieces& pieces) const {
+  static const Vec3 across(1.0, std::numbers::phi - 1.0, std::numbers::sqrt2 - 1.0);
+  pieces.add(step.b.v_n1.dot(across) > 0.0 ? 1.0 : 0.0);
 }
 
 Work Drag::work(const PairStep& step) const {

@@ -17,6 +17,10 @@ class Drag : public InteractionItem {
 
   [[nodiscard]] bool conservative() const { return false; }
   [[nodiscard]] bool dissipates() const { return true; }
+  [[nodiscard]] bool piecewise() const { return quadratic_ != 0.0; }
+  /// The half of all directions in which it moves: |v| v has a kink where v is zero, and motion on
+  /// a line leaves its half there.
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] and moment [N m].

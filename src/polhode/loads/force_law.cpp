@@ -45,7 +45,9 @@ class SlopeFunction final : public TimeFunction {
     return {r.rate, r.second, 0.0};
   }
   [[nodiscard]] TimeBreak next_break(double x, double until) const override {
-    return V_->next_break(x, until);
+    TimeBreak b = V_->next_break(x, until);
+    b.derivative = std::max(0, b.derivative - 1);
+    return b;
   }
 
  private:
@@ -82,6 +84,31 @@ double refine(const TimeFunction& f, double p, double q, const Estimate& whole, 
 
 double sign_of(double x) { return x < 0.0 ? -1.0 : 1.0; }
 
+/// Largest number of kinks of a law that are looked at one by one.
+constexpr std::size_t kMostKinks = 4096;
+
+/// Highest derivative of a law whose jumps end a smooth piece: beyond a jump of f'' the error of a
+/// step of length H is H⁴ in positions, which its estimate shows.
+constexpr int kRoughest = 2;
+
+/// First kink of a law above x, where a smooth piece ends.
+TimeBreak next_kink(const TimeFunction& law, double x) {
+  TimeBreak b = law.next_break(x, kFastest);
+  while (b.exists() && b.derivative > kRoughest) b = law.next_break(b.t, kFastest);
+  return b;
+}
+
+bool has_kinks(const TimeFunctionPtr& law) { return law && next_kink(*law, -kFastest).exists(); }
+
+/// Whether a law jumps at one of its first kinks.
+bool has_jumps(const TimeFunctionPtr& law) {
+  if (!law) return false;
+  TimeBreak b = next_kink(*law, -kFastest);
+  for (std::size_t k = 0; k < kMostKinks && b.exists(); ++k, b = next_kink(*law, b.t))
+    if (b.derivative == 0) return true;
+  return false;
+}
+
 }  // namespace
 
 double mean_value(const TimeFunction& f, double p, double q) {
@@ -110,6 +137,9 @@ ForceLaw::ForceLaw(const LoadDescription& load, const std::string& law)
   acts_ = acts == "tension"       ? Acts::tension
           : acts == "compression" ? Acts::compression
                                   : Acts::both;
+  kinks_ = has_kinks(f_);
+  jumps_ = has_jumps(f_);
+  jumps_at_zero_ = acts_ != Acts::both && f_ && (*f_)(0.0) != 0.0;
 }
 
 /// k (p + q)/2 + k₂ (p² + pq + q²)/3 + K/(pq): between points of the same sign.
@@ -126,8 +156,7 @@ double ForceLaw::mean_on_one_side(double p, double q) const {
 }
 
 double ForceLaw::mean(double p, double q) const {
-  const bool kink = acts_ != Acts::both || k_2_ != 0.0;
-  if (!kink || p * q >= 0.0) return mean_on_one_side(p, q);
+  if (!has_sides() || p * q >= 0.0) return mean_on_one_side(p, q);
   const double part = std::abs(p) / (std::abs(p) + std::abs(q));
   return part * mean_on_one_side(p, 0.0) + (1.0 - part) * mean_on_one_side(0.0, q);
 }
@@ -155,6 +184,11 @@ LawValue ForceLaw::over_step(double x_n, double x_n1, double alpha_f) const {
   if (std::abs(way) <= kShort * (std::abs(low) + std::abs(x_n1)))
     return {m, 0.5 * (1.0 + shift) * end.slope};
   return {m, (end.value - m + shift * (m - at(low).value)) / way};
+}
+
+void ForceLaw::piece(double x, ForcePieces& pieces) const {
+  if (has_sides()) pieces.add(x > 0.0 ? 1.0 : 0.0, jumps_at_zero_);
+  if (kinks_) pieces.add(acts_on(x) ? next_kink(*f_, x).t : 0.0, jumps_);
 }
 
 double ForceLaw::energy(double x) const {
@@ -186,7 +220,7 @@ std::vector<LawJump> jumps_of(const TimeFunction& law) {
 }
 
 ResistanceLaw::ResistanceLaw(const LoadDescription& load, const std::string& law)
-    : c_(load.value("damping", 0.0)), f_(load.law(law)) {
+    : c_(load.value("damping", 0.0)), f_(load.law(law)), kinks_(has_kinks(f_)) {
   if (!f_ || load.at_rest) return;
   jumps_ = jumps_of(*f_);
   if (jumps_.size() > kMostJumps)
@@ -201,6 +235,18 @@ ResistanceLaw::ResistanceLaw(const LoadDescription& load, const std::string& law
   });
   drops_.insert(drops_.end(), rows_.begin() + kMaxRows, rows_.end());
   rows_.resize(kMaxRows);
+}
+
+void ResistanceLaw::piece(double v, const double* memory, ForcePieces& pieces) const {
+  if (kinks_ && rows_.empty()) pieces.add(next_kink(*f_, v).t, jumps());
+  for (int k = 0; k < rows(); ++k) {
+    const double size = rows_[static_cast<std::size_t>(k)].size, held = memory[kHeld + k];
+    const double rounding = kBoundRounding * size;
+    const double at = rows_[static_cast<std::size_t>(k)].at;
+    const bool sticks = held > rounding && held < size - rounding;
+    pieces.slips.push_back(sticks ? 2.0 * held / size - 1.0 : held <= rounding ? -1.0 : 1.0);
+    pieces.slips.push_back(sticks ? 0.0 : v < at ? -1.0 : 1.0);
+  }
 }
 
 LawValue ResistanceLaw::smooth(const StepRates& v) const {

@@ -32,11 +32,17 @@ class ForceLaw {
   [[nodiscard]] LawValue at(double x) const;    ///< f(x) and f'(x).
   [[nodiscard]] double energy(double x) const;  ///< ∫ f from 0 to x.
   [[nodiscard]] bool is_zero() const { return k_ == 0.0 && k_2_ == 0.0 && K_ == 0.0 && !f_; }
+  /// Whether f, f' or f'' jumps somewhere.
+  [[nodiscard]] bool piecewise() const { return has_sides() || kinks_; }
+  /// Adds the smooth piece of f at x.
+  void piece(double x, ForcePieces& pieces) const;
 
  private:
   [[nodiscard]] bool acts_on(double x) const {
     return acts_ == Acts::both || (acts_ == Acts::tension) == (x > 0.0);
   }
+  /// Whether f differs between x < 0 and x > 0.
+  [[nodiscard]] bool has_sides() const { return acts_ != Acts::both || k_2_ != 0.0; }
   [[nodiscard]] double mean(double p, double q) const;
   [[nodiscard]] double mean_on_one_side(double p, double q) const;
 
@@ -44,6 +50,8 @@ class ForceLaw {
   TimeFunctionPtr f_;
   TimeFunctionPtr V_;  ///< Potential of f_ if that is given, else null.
   Acts acts_ = Acts::both;
+  bool kinks_ = false, jumps_ = false;  ///< Of f_.
+  bool jumps_at_zero_ = false;          ///< Where it begins to act.
 };
 
 /// Jump of a law of a rate.
@@ -88,6 +96,10 @@ class ResistanceLaw {
 
   [[nodiscard]] bool is_zero() const { return c_ == 0.0 && !f_; }
   [[nodiscard]] bool jumps() const { return !jumps_.empty(); }
+  /// Whether the law has kinks.
+  [[nodiscard]] bool piecewise() const { return kinks_; }
+  /// @param memory  Forces of its rows, likewise.
+  void piece(double v, const double* memory, ForcePieces& pieces) const;
   /// Number of rows, one for each jump upwards.
   [[nodiscard]] int rows() const { return static_cast<int>(rows_.size()); }
   /// Numbers of `memory` below; none without rows.
@@ -122,6 +134,7 @@ class ResistanceLaw {
 
   double c_ = 0.0;
   TimeFunctionPtr f_;
+  bool kinks_ = false;          ///< Of f_.
   std::vector<LawJump> jumps_;  ///< All.
   std::vector<LawJump> rows_;   ///< Upwards.
   std::vector<LawJump> drops_;  ///< The others.

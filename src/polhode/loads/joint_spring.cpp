@@ -59,6 +59,11 @@ void JointSpring::evaluate(const PairStep& step, PairTerms& t) const {
   clear_ground_sides(step, t);
 }
 
+void JointSpring::pieces(const PairStep& step, ForcePieces& pieces) const {
+  spring_.piece(coordinate(step).at_n1 - free_, pieces);
+  damper_.piece(rate_now(step), step.history + kDamper, pieces);
+}
+
 Work JointSpring::work(const PairStep& step) const {
   const CoordinateMotion q = coordinate(step);
   Work work{.stored = spring_.energy(q.at_n1 - free_)};

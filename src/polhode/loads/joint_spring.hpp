@@ -29,6 +29,8 @@ class JointSpring : public InteractionItem {
   }
   /// Nothing: at an instant the forces of its rows are given.
   void acceleration_terms(const PairStep&, Vec6&) const {}
+  [[nodiscard]] bool piecewise() const { return spring_.piecewise() || damper_.piecewise(); }
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force [N] or moment [N m] on b, coordinate with counted turns, its rate,

@@ -72,6 +72,11 @@ class ItemOnNodes final : public PairOnNodes {
     return item_.time_functions();
   }
 
+  [[nodiscard]] bool piecewise() const override { return item_.piecewise(); }
+  void pieces(const NodeStep& instant, const double*, ForcePieces& pieces) const override {
+    seen(instant, false, [&](const PairStep& pair) { item_.pieces(pair, pieces); });
+  }
+
   ElementReport evaluate(const NodeStep& step, const double*, double*, const Mat3&,
                          const ElementSink& sink) const override {
     PairTerms terms;

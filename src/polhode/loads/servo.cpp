@@ -108,6 +108,11 @@ void Servo::acceleration_terms(const PairStep& step, Vec6& gamma) const {
       function_->rates(step.context.t_n1(), TimeSide::kAfter).second;
 }
 
+void Servo::pieces(const PairStep& step, ForcePieces& pieces) const {
+  const Command u = command(step, coordinate(step));
+  pieces.add(u.limited ? u.force : 0.0);
+}
+
 Work Servo::work(const PairStep& step) const {
   const CoordinateMotion q = coordinate(step);
   return {.put_in = command(step, q).force * (q.at_n1 - q.at_n)};

@@ -34,6 +34,8 @@ class Servo : public InteractionItem {
     return std::holds_alternative<FreeAngle>(coordinate_) ? Coupling::couple : Coupling::all;
   }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {function_}; }
+  [[nodiscard]] bool piecewise() const { return limit_ > 0.0; }
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   [[nodiscard]] Work work(const PairStep& step) const;

@@ -139,6 +139,12 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
   clear_ground_sides(step, t);
 }
 
+void SpringDamper::pieces(const PairStep& step, ForcePieces& pieces) const {
+  const Stretch s = stretch(step);
+  spring_.piece(s.l_n1 - l_0_, pieces);
+  damper_.piece(s.rate, step.history, pieces);
+}
+
 Work SpringDamper::work(const PairStep& step) const {
   const Stretch s = stretch(step);
   return {.stored = spring_.energy(s.l_n1 - l_0_),

@@ -38,6 +38,8 @@ class SpringDamper : public InteractionItem {
   /// Nothing: at an instant the forces of its rows are given.
   void acceleration_terms(const PairStep&, Vec6&) const {}
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {pull_}; }
+  [[nodiscard]] bool piecewise() const { return spring_.piecewise() || damper_.piecewise(); }
+  void pieces(const PairStep& step, ForcePieces& pieces) const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Report at an instant: force on b [N], length [m], its rate [m/s], energy stored [J].

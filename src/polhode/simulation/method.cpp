@@ -199,6 +199,8 @@ Method choose_method(const System& system, const Model& model) {
   c.min_step = a.min_step.value_or(0.0);
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;
+  c.lagged = std::ranges::any_of(
+      model.controllers, [](const ControllerSpec& controller) { return !controller.sample; });
   c.threads = number_of_threads(system, a);
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
                        : c.extrapolated          ? extrapolated_tolerance(a)

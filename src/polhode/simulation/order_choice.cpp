@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <optional>
 
 #include <polhode/core/error.hpp>
@@ -34,16 +35,6 @@ class Settings {
   [[nodiscard]] OrderChoice by_tolerance() const;
   /// The highest order of extrapolation for which the model is smooth enough, if there is one.
   [[nodiscard]] std::optional<int> highest_order() const;
-  /// A sentence on kinks of forces that automatic extrapolated steps may not notice, if there are
-  /// any.
-  [[nodiscard]] std::string kinks() const {
-    const auto part = a_.step ? std::nullopt : kink_of_forces(model_);
-    if (!part) return {};
-    return format(
-        "Warning: {} {}. Where it falls next to the end of a step the error may exceed the "
-        "tolerance, unnoticed. Compare with order: 2.\n",
-        part->what, part->why);
-  }
   [[nodiscard]] std::optional<NotSmooth> rough(int order) const {
     return not_smooth(model_, system_, order, !a_.step);
   }
@@ -85,7 +76,6 @@ OrderChoice Settings::extrapolation() const {
   if (choice.varies) choice.order = highest_order().value_or(4);
   if (const auto part = rough(choice.order))
     refuse(format("{} {}", part->what, part->why), part->hint);
-  choice.reason = kinks();
   return choice;
 }
 
@@ -120,14 +110,18 @@ OrderChoice Settings::by_tolerance() const {
     return choice;
   };
   if (!symmetric()) return two("higher orders need rho_inf: 1 and momentum_rate: momentum");
+  const auto continuous = std::ranges::find_if(
+      model_.controllers, [](const ControllerSpec& controller) { return !controller.sample; });
+  if (continuous != model_.controllers.end())
+    return two(format("the controller '{}' is continuous and acts at the ends of steps",
+                      continuous->name));
   if (a_.method == "composition" ? !system_.dissipates() : conserves())
     return {.order = kComposed,
             .extrapolated = false,
             .varies = false,
             .reason = format("Order {} by composition with automatic steps, {}: nothing in the "
                              "model dissipates.\n",
-                             kComposed, goal) +
-                      kinks()};
+                             kComposed, goal)};
   if (a_.method == "composition")
     return two("compositions of higher order need a model without dampers");
   const std::optional<int> order = highest_order();
@@ -140,8 +134,7 @@ OrderChoice Settings::by_tolerance() const {
       .extrapolated = true,
       .varies = true,
       .reason = format("Orders 4 to {} by extrapolation with automatic steps, {}: the model {}.\n",
-                       *order, goal, system_.dissipates() ? "dissipates" : "is driven") +
-                kinks()};
+                       *order, goal, system_.dissipates() ? "dissipates" : "is driven")};
 }
 
 OrderChoice Settings::choose() const {
@@ -164,8 +157,7 @@ OrderChoice Settings::choose() const {
   OrderChoice choice = extrapolation();
   choice.reason =
       format("Order {} by extrapolation: {}.\n", order,
-             system_.dissipates() ? "the model dissipates" : "it does not exist by composition") +
-      choice.reason;
+             system_.dissipates() ? "the model dissipates" : "it does not exist by composition");
   return choice;
 }
 

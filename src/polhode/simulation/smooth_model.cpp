@@ -16,9 +16,6 @@ namespace {
 /// Rates and coordinates within which a law is searched for kinks [SI].
 constexpr double kLawRange = 0x1p20;
 
-/// Order of a step for which a kink of any derivative counts.
-constexpr int kSmoothest = 12;
-
 /// Kinds of loads with histories or curves that extrapolation does not combine.
 constexpr std::array<std::string_view, 4> kNotCombined = {"point_on_curve", "curve_on_curve",
                                                           "point_on_surface", "rolling"};
@@ -47,10 +44,10 @@ class Search {
   }
   void law(const LoadSpec& load, const std::string& key, const TimeFunction& law);
   /// Whether a force with a jump in this derivative keeps the order: a step across the jump has an
-  /// error H^(derivative + 2) in positions, and a run crosses it a bounded number of times. Where
-  /// the error is held, any continuous force does.
+  /// error H^(derivative + 2) in positions, and a run crosses it a bounded number of times.
+  /// Automatic steps end at kinks and jumps.
   [[nodiscard]] bool smooth_enough(int derivative) const {
-    return derivative + 2 >= (automatic_ ? 3 : order_);
+    return automatic_ || derivative + 2 >= order_;
   }
 
   int order_;
@@ -63,7 +60,11 @@ void Search::law(const LoadSpec& load, const std::string& key, const TimeFunctio
   for (TimeBreak b = law.next_break(-kLawRange, kLawRange); b.exists() && worst > 0;
        b = law.next_break(b.t, kLawRange))
     worst = std::min(worst, b.derivative);
-  if (!smooth_enough(worst))
+  const bool potential = key == "energy", of_rate = key.starts_with("damper");
+  // Jumps of a law of a rate are dry friction, those of a potential infinite forces.
+  const bool never = worst == 0 && (potential || of_rate);
+  if (potential) worst = std::max(0, worst - 1);
+  if (never || !smooth_enough(worst))
     refuse(format("{} of '{}'", key, load.name),
            worst == 0 ? "jumps" : format("has kinks in its derivative {}", worst),
            "Use a smooth expression, or a lower order; order: 2 always runs");
@@ -107,8 +108,6 @@ void Search::cable(const CableLineSpec& cable) {
 }
 
 void Search::kinks_of(const CableLineSpec& cable) {
-  if (cable.muscle)
-    refuse(format("'{}' is a muscle", cable.name), "whose curves have kinks", kOrderTwo);
   if (!cable.around.empty())
     refuse(format("the cable '{}' runs around an obstacle", cable.name),
            "where its stiffness jumps as it lifts off", kOrderTwo);
@@ -164,16 +163,6 @@ void Search::elements(const Nodes& nodes) {
 }
 
 }  // namespace
-
-std::optional<NotSmooth> kink_of_forces(const Model& model) {
-  Search search(kSmoothest, false);
-  for (const LoadSpec& load : model.loads) {
-    search.kinks_of(load);
-    search.laws(load);
-  }
-  for (const CableLineSpec& cable : model.cables) search.kinks_of(cable);
-  return search.found();
-}
 
 std::optional<NotSmooth> not_smooth(const Model& model, const System& system, int order,
                                     bool automatic) {

@@ -18,14 +18,9 @@ struct NotSmooth {
 
 /// The first part of a model whose motion has fewer derivatives than an extrapolated step of this
 /// order needs, but for times that steps end at, or whose state is not combined rightly.
-/// @param automatic  The error of steps is held at a tolerance. Members of a step across a kink of
-/// a force differ by its effect, so that steps are short around it, and only there; steps in which
-/// a stop is met are left to order 2.
+/// @param automatic  The error of steps is held at a tolerance. Steps then end at kinks of forces;
+/// those in which a stop is met are left to order 2.
 [[nodiscard]] std::optional<NotSmooth> not_smooth(const Model& model, const System& system,
                                                   int order, bool automatic);
-
-/// The first force of loads and cables that may have a kink in a coordinate or a rate, whether it
-/// is reached or not.
-[[nodiscard]] std::optional<NotSmooth> kink_of_forces(const Model& model);
 
 }  // namespace polhode

@@ -8,7 +8,6 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/dynamics/load_step.hpp>
 #include <polhode/solids/cell_stability.hpp>
 #include <polhode/solids/elements/extrapolation.hpp>
 #include <polhode/solids/elements/reference_data.hpp>
@@ -284,7 +283,7 @@ class SolidGroup final : public SolidElements {
                                    const Mat3& turn) const {
     ElementStep s;
     if (data_.memory_size > 0)
-      s.memory = {*material_, step.rate != 0.0 ? step.context.dt : memory_time(step.context),
+      s.memory = {*material_, step.rate != 0.0 ? step.context.dt : step.context.relaxation_time,
                   step.alpha_f};
     s.x_n = step.x_n;
     s.x_n1 = step.x_n1;

@@ -79,10 +79,12 @@ void StaticNewton::enter(double load_factor, double last) {
   const bool grows = !follows || load_factor < 0.0 || last < 0.0;
   c.load_factor = follows ? std::min(1.0 + load_factor, 1.0) : load_factor;
   c.dt = load_factor != last ? load_factor - last : 1.0;
-  c.ga.delta = grows && load_factor != last ? 1.0 : 0.0;
+  c.load_factor_n = grows && load_factor != last ? c.load_factor - c.dt : c.load_factor;
   c.t_n = t - c.dt;
   // Loads at the start of a history act suddenly, at its first instant.
-  if (follows) c.ga.rho_inf = grows || load_factor == last ? 0.0 : c.dt;
+  c.relaxation_time = !follows                       ? std::numeric_limits<double>::infinity()
+                      : grows || load_factor == last ? 0.0
+                                                     : c.dt;
 }
 
 /// Begins a search from the equilibrium of a state.

@@ -244,14 +244,20 @@ struct LoadStepper::Impl {
 
   /// Goes downhill to an equilibrium where Newton's method finds none near the start: that is no
   /// equilibrium whatever the load, or has no stiffness, as a toggle at its dead centre or a spring
-  /// with free play. There is no branch that would be left: none yet, or it ends in a free motion.
-  bool goes_down(State& state, double factor, bool free) {
-    if ((equilibria > 0 && !free) || relaxed || unilateral()) return false;
+  /// with free play. There is no branch that would be left: none yet, or it ends in a free motion,
+  /// or in a limit point, beyond which the model jumps.
+  bool goes_down(State& state, double factor, bool free, std::optional<LimitPoint> end) {
+    if ((equilibria > 0 && !free && !end) || relaxed || unilateral()) return false;
     const State old = state;
     StaticStep step = newton.relax(state, factor, false);
     take(step);
     if (!step.converged) return false;
     ++report.relaxations;
+    if (end) {
+      end->jump = true;
+      end->distance = state_distance(*system, old, state);
+      report.limit_points.push_back(std::move(*end));
+    }
     increment = factor - old.t;
     accept(old, old.t, state, step, 0.0);
     return true;
@@ -325,20 +331,18 @@ struct LoadStepper::Impl {
       increment = kCut * (factor - from);
       if (increment >= kMinIncrement * size(from)) continue;
       increment = first;
-      if (goes_down(state, next_factor(from, limit), !step.free_motions.empty())) return true;
-      {
-        std::string soft;
-        if (equilibria > 0) {
-          newton.assemble_at(state, from);
-          soft = newton.softest().text;
-        }
-        if (!unilateral() && equilibria > 1 && from - factor_before > kSame)
-          if (std::optional<LimitPoint> end =
-                  extrapolate_limit(*system, options, {before, state, factor_before, from}))
-            report.limit_points.push_back(std::move(*end));
-        explain(step, soft, state, factor);
-        return false;
+      std::optional<LimitPoint> end;
+      if (!unilateral() && equilibria > 1 && from - factor_before > kSame)
+        end = extrapolate_limit(*system, options, {before, state, factor_before, from});
+      if (goes_down(state, next_factor(from, limit), !step.free_motions.empty(), end)) return true;
+      std::string soft;
+      if (equilibria > 0) {
+        newton.assemble_at(state, from);
+        soft = newton.softest().text;
       }
+      if (end) report.limit_points.push_back(std::move(*end));
+      explain(step, soft, state, factor);
+      return false;
     }
   }
 

@@ -111,8 +111,9 @@ NewtonReport ExtrapolationTable::advance(State& state, double H, SingleStep& sin
     report.iterations = iterations += report.iterations;
     report.hard = hard = hard || report.hard;
     rounding.push_back(counts_[j] * report.rounding);
-    const bool ends_here = !report.converged || met_stop_ || (j + 2 == columns && hopeless());
-    if (ends_here) {
+    const bool ends_here = !report.converged || met_stop_;
+    gave_up_ = !ends_here && j + 2 == columns && hopeless();
+    if (ends_here || gave_up_) {
       state.ledger.iterations += iterations;
       return report;
     }

@@ -46,6 +46,8 @@ class ExtrapolationTable {
   [[nodiscard]] int worst_body(double H) const;
   /// Time spent waiting for members of other threads [s].
   [[nodiscard]] double waited() const;
+  /// End of a step that was given up for its estimate, as far as it was computed; else null.
+  [[nodiscard]] const State* given_up_at() const { return gave_up_ ? &result_ : nullptr; }
   /// Whether a joint stop was met; then the step was given up.
   [[nodiscard]] bool met_stop() const { return met_stop_; }
   [[nodiscard]] int most_columns() const { return static_cast<int>(counts_.size()); }
@@ -76,7 +78,7 @@ class ExtrapolationTable {
   std::unique_ptr<InstantSolver> solver_;
   std::unique_ptr<MemberThreads> threads_;  ///< Null: one thread.
   double difference_ = 0.0, difference_before_ = 0.0, rounding_ = 0.0;
-  bool met_stop_ = false;
+  bool met_stop_ = false, gave_up_ = false;
 };
 
 }  // namespace polhode

@@ -59,6 +59,12 @@ inline constexpr double kWorthTwo = 1.5;
 inline constexpr int kFirstComparison = 4, kLastComparison = 256, kLaterBy = 2;
 /// Steps of order 2 beyond a stop after which extrapolation is tried again.
 inline constexpr int kBeyondStop = 3;
+/// Part of the allowed error below which a kink in a step of order 2 leaves its past of use.
+inline constexpr double kPassesUnnoticed = 0.01;
+/// Ratio to the last step below which velocities are projected onto the rows first.
+inline constexpr double kMuchShorter = 0.25;
+/// Trials of a step that kinks of forces may shorten; the estimate of its error judges later ones.
+inline constexpr int kTrialsOfKink = 8;
 /// Consecutive steps with few iterations after which a halved step grows again.
 inline constexpr int kEasySteps = 3, kFewIterations = 4;
 /// State::easy_steps of automatic steps: the length has to be found again.

@@ -14,6 +14,7 @@ struct StepVerdict {
   double error = 0.0;
   int columns = 0;     ///< Members of the next extrapolated step; 0: as they are.
   bool noise = false;  ///< Accepted because shorter steps have no smaller error.
+  bool kink = false;   ///< Of a step of order 2 that a kink of a force makes too long.
 };
 
 /// The last rejected trial with an estimate, for comparison.

@@ -64,6 +64,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
   cut_short = wanted < kCutShort * planned;
   bool fresh = false;
   Refused refused;
+  int kinked = 0;   // trials refused for kinks of forces
   std::string gap;  // left by the first trial whose rows did not all hold
   for (;;) {
     const double H = wanted;
@@ -80,7 +81,11 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
                                    (automatic() && H * single.jump() > allowed_error(before, H)));
     const bool stopped = impact || (!composed() && !system.contacts() && single.stopped());
     Verdict verdict{.fine = report.newton.converged && !met_stop, .factor = 0.5};
-    if (verdict.fine && automatic()) {
+    const std::optional<double> kink =
+        verdict.fine && kinked < kTrialsOfKink ? to_kink(before, state, H, planned) : std::nullopt;
+    if (kink) {
+      verdict = {.fine = false};
+    } else if (verdict.fine && automatic()) {
       const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
       verdict = impact || by_stop.fine ? by_stop : judge(before, state, H, fresh, refused);
     }
@@ -113,6 +118,13 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     state.ledger.iterations = iterations;
     ++state.ledger.rejected;
     ++report.rejected;
+    if (kink) {
+      ++kinked;
+      wanted = std::max(*kink * H, least_step());
+      cut_short = wanted < kCutShort * planned;
+      if (!composed()) prepare_short_step(state, wanted);
+      continue;
+    }
     if (const auto& open = single.open_row(); open && !report.newton.converged && gap.empty()) {
       gap = gap_text(system, *open, H);
       // A shorter step would only make the gap smaller.
@@ -134,6 +146,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     state.easy_steps = 0;
     fresh = !report.newton.converged;
     ++refused.count;
+    if (verdict.kink) prepare_short_step(state, wanted);
     if (H > least_step()) {
       wanted = std::max(wanted, least_step());
     } else {

@@ -25,6 +25,9 @@ struct StepControl {
   double horizon = 1.0;        ///< Duration of the run, over which order 2 spreads its error [s].
   double min_step = 0.0;       ///< 0: 1e-9 of the horizon or 1e-6 of the fixed step [s].
   double max_step = 0.0;       ///< 0: none [s].
+  /// Whether loads have values that are set between steps, from the motion up to there: continuous
+  /// controllers.
+  bool lagged = false;
   NewtonOptions newton;
   bool conserving = true;  ///< Potentials in discrete-gradient form.
   int threads = 1;         ///< For members of extrapolated steps; results have the same bits.

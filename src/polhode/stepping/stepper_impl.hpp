@@ -9,6 +9,7 @@
 #include <polhode/dynamics/composition.hpp>
 #include <polhode/stepping/drive_kinks.hpp>
 #include <polhode/stepping/extrapolation_table.hpp>
+#include <polhode/stepping/force_kinks.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/start.hpp>
 #include <polhode/stepping/step_control.hpp>
@@ -28,6 +29,7 @@ struct Stepper::Impl {
   const System& system;
   SingleStep single;
   DriveKinks kinks;
+  ForceKinks force_kinks;
   GeneralizedAlpha ga;
   StepControl control;
   TimeBreaks breaks;
@@ -52,6 +54,7 @@ struct Stepper::Impl {
       : system(s),
         single(s, std::move(engine), g, kernels, c.conserving),
         kinks(s),
+        force_kinks(s),
         ga(g),
         control(c),
         breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : std::max(kBreaksComposed, c.order - 3)) {
@@ -205,6 +208,10 @@ struct Stepper::Impl {
   using Verdict = StepVerdict;
   using Refused = RefusedStep;
   Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
+  [[nodiscard]] std::optional<double> to_kink(const State& from, const State& reached, double H,
+                                              double planned) const;
+  void prepare_short_step(State& state, double H);
+  std::optional<Verdict> judge_passage(const State& from, State& reached, double H);
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
 
   void choose_scheme(State& state, double room);

@@ -67,6 +67,33 @@ double Stepper::Impl::extrapolated_error(const State& from, const State& reached
   return std::max(difference, missed * control.horizon / (kBalanceTolerances * std::abs(H)));
 }
 
+/// Part of a step at whose end it has passed the first kink of a force within it, of order 2 the
+/// first turn of a motion with dry friction; nothing if there is none, but near its ends. An error
+/// of δ in the time of a jump changes velocities by δ, in that of a kink by δ², so that the root of
+/// the tolerance is near enough.
+/// @eq{force-kink}
+/// @param planned  Length of a step that no kink ends [s].
+std::optional<double> Stepper::Impl::to_kink(const State& from, const State& reached, double H,
+                                             double planned) const {
+  if (force_kinks.none() || !automatic() || H <= least_step()) return std::nullopt;
+  if (!composed()) {
+    if (!watches_jumps()) return std::nullopt;
+    const double whole = first_step(from) / H;
+    const auto turn =
+        force_kinks.first_turn(from, reached, kImpactError * control.tolerance * whole);
+    if (turn) return turn;
+    // By halves of the way: the line through two forces is the better the shorter they act.
+    const auto away = force_kinks.break_away(from, reached);
+    const double near = std::sqrt(control.tolerance) * whole;
+    return away && *away > near ? std::optional(std::max(0.5 * *away, near)) : std::nullopt;
+  }
+  const State* given_up = extrapolates() ? table->given_up_at() : nullptr;
+  const double whole = std::max(planned, H) / H;
+  const ForceKinks::Margins near{.kink = std::sqrt(2.0 * control.tolerance) * whole,
+                                 .jump = control.tolerance * whole};
+  return force_kinks.first(from, given_up ? *given_up : reached, near);
+}
+
 /// Error estimate of a single step from its two halves, whose error is a quarter; it does not use
 /// past steps. @eq{step-halves}
 std::optional<double> Stepper::Impl::error_by_halves(const State& from, const State& reached,
@@ -109,7 +136,10 @@ std::optional<double> Stepper::Impl::error_of_two(const State& from, double dt) 
 /// Finds an automatic step of order 2 whose estimate, known after three steps, is acceptable: at
 /// the start and where past steps give no information. @param way  Time to the next break [s].
 void Stepper::Impl::find_length(State& state, double way) {
-  const double most = sampled(state, std::min(first_step(state), way / 3.0));
+  // Values that are set between steps are constant in the first one, and in these trials: their
+  // change within it is an error of second order that no estimate contains.
+  const double first = first_step(state) * (control.lagged ? std::sqrt(control.tolerance) : 1.0);
+  const double most = sampled(state, std::min(first, way / 3.0));
   double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most) : most, good = 0.0;
   before = state;
   for (int attempt = 0; attempt < kStepProbes && (dt > least_step() || attempt == 0); ++attempt) {
@@ -132,6 +162,41 @@ void Stepper::Impl::find_length(State& state, double way) {
   single.ledger().forget();
 }
 
+/// Projects velocities onto the rows before a step much shorter than the last one. Their normal
+/// part is of the order of the square of the step that left it; the short step would turn it into
+/// reactions, and these into dry friction. @eq{force-kink}
+void Stepper::Impl::prepare_short_step(State& state, double H) {
+  if (system.rows() == 0 || !(H < kMuchShorter * state.dt_last)) return;
+  const BodySums before_it = single.ledger().sums(state);
+  project_velocities(system, state);
+  single.ledger().add_jump(state, before_it, 0.0);
+  state.dt_last = H;
+}
+
+/// Verdict on a step of order 2 in which a force passes from one smooth piece to another, or a
+/// joint begins or ceases to stick; nothing if there is none, or it matters little. The velocity
+/// then has an error of first or second order, which the rest of the run multiplies by its time:
+/// that is measured by two halves, and is allowed a part of the tolerance. @eq{force-kink}
+std::optional<Stepper::Impl::Verdict> Stepper::Impl::judge_passage(const State& from,
+                                                                   State& reached, double H) {
+  if (composed() || !watches_jumps() || !force_kinks.passed(from, reached)) return std::nullopt;
+  const double rest = std::max(H, control.horizon - from.t);
+  const auto difference = difference_of({0.5, 0.5}, from, reached, H, rest);
+  if (!difference) return Verdict{.fine = false, .factor = 0.5};
+  // Velocities have the rounding of positions, by the step.
+  const double allowed = std::max(kImpactError * control.tolerance, least_error * rest / H);
+  Verdict v;
+  v.fine = *difference <= allowed || H <= least_step();
+  if (!v.fine) {
+    v.kink = true;
+    v.factor = std::clamp(kSafety * std::sqrt(allowed / *difference), kMinFactorTable, 0.5);
+    return v;
+  }
+  if (*difference <= kPassesUnnoticed * allowed) return std::nullopt;
+  begin_anew(reached);
+  return v;
+}
+
 /// Verdict on a step in which a stop is active. Its time within the step is arbitrary, which hardly
 /// matters if the step is short enough.
 Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State& reached,
@@ -151,8 +216,13 @@ Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State&
 
 Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, double H, bool fresh,
                                             Refused& refused) {
-  Verdict v;
   companion_iterations = 0;
+  if (const auto passage = judge_passage(from, reached, H)) {
+    reached.ledger.iterations += companion_iterations;
+    if (!passage->fine) refused = {H, passage->error, refused.count};
+    return *passage;
+  }
+  Verdict v;
   double power = 0.5, safety = kSafety, longest = kMaxFactor;
   const double allowed = std::max(allowed_error(from, H), extrapolates() ? table->rounding() : 0.0);
   std::optional<double> error;

@@ -7,6 +7,7 @@
 
 #include <polhode/core/time_function.hpp>
 #include <polhode/system/element_sample.hpp>
+#include <polhode/system/force_pieces.hpp>
 #include <polhode/system/node_step.hpp>
 #include <polhode/system/pair_terms.hpp>
 
@@ -104,6 +105,11 @@ class ElementGroup {
   /// an instant: internal unknowns are then those of the history.
   [[nodiscard]] virtual Work work(const NodeStep& step, const double* history,
                                   const double* scratch) const = 0;
+  /// Whether its forces have kinks at positions or rates, as in InteractionItem.
+  [[nodiscard]] virtual bool piecewise() const { return false; }
+  /// Adds the smooth pieces of its forces at an instant.
+  virtual void pieces(const NodeStep& /*instant*/, const double* /*history*/,
+                      ForcePieces& /*pieces*/) const {}
   /// Samples fields at an instant, one sample per element; false if there are none.
   virtual bool sample(const NodeStep& /*instant*/, const double* /*history*/,
                       std::span<ElementSample> /*samples*/) const {

@@ -64,6 +64,7 @@ class Group final : public InteractionGroup {
     t.compliant = item.compliant();
     t.set_valued = item.set_valued();
     t.holds_ground = item.holds_ground();
+    t.piecewise = item.piecewise();
     t.row_goes_on = item.row_goes_on();
     t.impulse_sum = item.impulse_sum();
     t.work_entry = static_cast<short>(item.work_entry());
@@ -115,6 +116,9 @@ class Group final : public InteractionGroup {
   }
   bool acceptable(int i, const PairStep& step) const override {
     return off(i, step.history) || at(i).acceptable(step);
+  }
+  void pieces(int i, const PairStep& step, ForcePieces& pieces) const override {
+    if (!off(i, step.history)) at(i).pieces(step, pieces);
   }
   void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
                    double* history) const override {

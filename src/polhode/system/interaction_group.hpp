@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polhode/core/time_function.hpp>
+#include <polhode/system/force_pieces.hpp>
 #include <polhode/system/motion_basis.hpp>
 #include <polhode/system/pair_terms.hpp>
 #include <polhode/system/unilateral_row.hpp>
@@ -28,6 +29,7 @@ struct InteractionTraits {
   bool works = false;  ///< work() must be called.
   bool prescribes = false, has_barrier = false, always_queried = false, reversible = false;
   bool compliant = false, set_valued = false, holds_ground = false;
+  bool piecewise = false;    ///< Its force has kinks.
   bool row_goes_on = false;  ///< The next item is a further part of its only row.
   ImpulseSum impulse_sum = ImpulseSum::none;
   short work_entry = -1, impulse_entry = -1;  ///< In the history; −1: none.
@@ -99,6 +101,9 @@ class InteractionGroup {
   void unilateral_rows(int i, const PairStep& step, std::vector<UnilateralRow>& list) const {
     one_sided(i, step, nullptr, &list);
   }
+  /// Adds the smooth pieces of its force at an instant; none while it is
+  /// switched off.
+  virtual void pieces(int i, const PairStep& step, ForcePieces& pieces) const = 0;
   /// Activates an item at an instant; its rows keep their present values.
   /// @returns the largest of these [m or -].
   virtual double switch_on(int i, const PairStep& step, double* history) const = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polhode/core/time_function.hpp>
+#include <polhode/system/force_pieces.hpp>
 #include <polhode/system/motion_basis.hpp>
 #include <polhode/system/pair_terms.hpp>
 #include <polhode/system/unilateral_row.hpp>
@@ -43,6 +44,10 @@ struct InteractionItem {
   /// bodies' own, there is the kinetic energy −½ m_ab |v_a − v_b|², and evaluate() exerts its
   /// forces (system/mass_coupling.hpp).
   [[nodiscard]] double coupled_mass() const { return 0.0; }
+  /// Whether its force has kinks at positions or rates: steps of high order end there.
+  [[nodiscard]] bool piecewise() const { return false; }
+  /// Adds the smooth pieces of its force at an instant.
+  void pieces(const PairStep&, ForcePieces& /*pieces*/) const {}
   /// Largest distance of its points from its bodies [m]: for length scales.
   [[nodiscard]] double reach() const { return 0.0; }
   /// Functions of time of its force; absent components may be null.
@@ -162,6 +167,12 @@ struct OwnFunctions {
   static constexpr bool clearance = !requires {
     requires std::same_as<decltype(&Item::clearance), decltype(&Base::clearance)>;
   };
+  static constexpr bool piecewise = !requires {
+    requires std::same_as<decltype(&Item::piecewise), decltype(&Base::piecewise)>;
+  };
+  static constexpr bool pieces = !requires {
+    requires std::same_as<decltype(&Item::pieces), decltype(&Base::pieces)>;
+  };
   static constexpr bool impacts = !requires {
     requires std::same_as<decltype(&Item::impacts), decltype(&Base::impacts)>;
   };
@@ -195,7 +206,8 @@ struct OwnFunctions {
 template <class Item>
 concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
     requires(const Item item, const PairStep& step, PairTerms& terms, Vec6& gamma, double* history,
-             std::vector<Impact>& impacts, PrescribedRows& rows, std::vector<UnilateralRow>& ends) {
+             std::vector<Impact>& impacts, PrescribedRows& rows, std::vector<UnilateralRow>& ends,
+             ForcePieces& pieces) {
   { Item::kKind } -> std::convertible_to<const char*>;
   { item.evaluate(step, terms) } -> std::same_as<void>;
   { item.rows() } -> std::same_as<int>;
@@ -210,6 +222,7 @@ concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
   { item.impacts(step, impacts) } -> std::same_as<void>;
   { item.clearance(step) } -> std::same_as<double>;
   { item.unilateral_rows(step, ends) } -> std::same_as<void>;
+  { item.pieces(step, pieces) } -> std::same_as<void>;
   { item.acceptable(step) } -> std::same_as<bool>;
   { item.motion_basis() } -> std::same_as<std::optional<MotionBasis>>;
 };
@@ -241,6 +254,7 @@ concept Interaction = HasInteractionFunctions<Item> &&
                       (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
                       (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance) &&
                       (OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::impacts) &&
+                      (OwnFunctions<Item>::piecewise == OwnFunctions<Item>::pieces) &&
                       // Rows that only push need records.
                       (OwnFunctions<Item>::unilateral == OwnFunctions<Item>::unilateral_rows) &&
                       (OwnFunctions<Item>::unilateral == OwnFunctions<Item>::unilateral_entry) &&

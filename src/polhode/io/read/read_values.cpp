@@ -56,6 +56,15 @@ bool check_range(ReadContext& context, const SourceNode& node, const std::string
   return false;
 }
 
+/// Whether a text ends in the word t, behind a unit: the tonne, where the time may be meant.
+bool ends_in_tonne(const std::string& text, const Expression& expression) {
+  const auto last = text.find_last_not_of(' ');
+  if (!expression.written_unit() || last == std::string::npos || last == 0 || text[last] != 't')
+    return false;
+  const char before = text[last - 1];
+  return before == '*' || before == ' ';
+}
+
 /// Reports the dimension of the value and the expected one.
 void wrong_dimension(ReadContext& context, const SourceNode& node, const std::string& path,
                      const Field& field, const Expression& expression) {
@@ -64,6 +73,8 @@ void wrong_dimension(ReadContext& context, const SourceNode& node, const std::st
       expression.dimension().matches(dimensions::kMass))
     hint = "The unit g is the gram; standard gravity is g0.";
   if (field.dimension.is_none()) hint = "Give it without a unit.";
+  if (ends_in_tonne(node.text, expression))
+    hint = "Behind a unit t is the tonne: the unit is last in an expression of the time t, 5*t kN.";
   context.fault(node, path,
                 format("expects {}, but {} is {}", expected(field), quote(node.text),
                        expression.dimension().name()),

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// States of friction and stops of a joint, for steps that end where these change.
+#include <polhode/joints/resistance_coordinates.hpp>
+
+namespace polhode {
+
+void Resistance::pieces(const View& v, ForcePieces& pieces) const {
+  for_limits([&](const JointLimits&, bool, int memory) {
+    pieces.slips.push_back(read_record<StopMemory>(v.memory + memory).side);
+  });
+  if (!data_.friction) return;
+  const auto memory = read_record<BristleMemory>(v.memory);
+  const BodyStep& a = v.step.a;
+  Vec3 kept(memory.bristle);
+  if (kind_ == Kind::spherical) kept = a.Lambda_n1 * kept;
+  const Vec3 rate = rates(v, v.q_n1, a, v.step.b);
+  const bool slips = memory.slips != 0.0;
+  const auto sign = [&](double x) { return !slips ? 0.0 : x < 0.0 ? -1.0 : 1.0; };
+  // Coordinates of one cone slip in a direction that may turn without a jump.
+  const bool one_cone = kind_ == Kind::cylindrical || kind_ == Kind::spherical;
+  if (one_cone) return pieces.slips.push_back(sign(rate.dot(kept)));
+  for (int i = 0; i < cones(); ++i)
+    pieces.slips.insert(pieces.slips.end(), {sign(kept[i]), sign(rate[i] * kept[i])});
+}
+
+}  // namespace polhode

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <polhode/stepping/force_kinks.hpp>
+#include <polhode/system/history_record.hpp>
+#include <polhode/system/unilateral_row.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Equal parts of a step whose ends are compared: a piece that is passed in less is not noticed.
+constexpr int kCompared = 8;
+/// Width to which a passage is narrowed down, as a part of the margin.
+constexpr double kNarrow = 0.25;
+
+/// Weights of a value, and of a rate times the length, at both ends of [0, 1] in the cubic
+/// polynomial, and in its derivative.
+struct Cubic {
+  double from, to, rate_from, rate_to;
+};
+
+Cubic cubic_at(double s) {
+  const double to = s * s * (3.0 - 2.0 * s), left = 1.0 - s;
+  return {1.0 - to, to, s * left * left, -s * s * left};
+}
+
+Cubic slope_at(double s) {
+  const double to = 6.0 * s * (1.0 - s);
+  return {-to, to, (1.0 - s) * (1.0 - 3.0 * s), s * (3.0 * s - 2.0)};
+}
+
+/// A quaternion's numbers as a vector (x, y, z, w), and the rate of these.
+using Vec4 = Eigen::Vector4d;
+Vec4 rate_of(const Quat& q, const Vec3& W) {
+  return 0.5 * (q * Quat(0.0, W.x(), W.y(), W.z())).coeffs();
+}
+
+}  // namespace
+
+/// Two states, and what lies between them.
+struct ForceKinks::Between {
+  const System& system;
+  const State &from, &to;
+  double H;
+
+  [[nodiscard]] BodyStep body(int b, double s) const {
+    if (b == kGround) return BodyStep::ground(1.0);
+    const BodyMotion m = system.motion(from, b), n = system.motion(to, b);
+    const Cubic value = cubic_at(s), slope = slope_at(s);
+    const auto mixed = [&](const Cubic& c, const auto& x, const auto& y, const auto& x_rate,
+                           const auto& y_rate) {
+      return (c.from * x + c.to * y + H * (c.rate_from * x_rate + c.rate_to * y_rate)).eval();
+    };
+    const Vec4 p = m.q.coeffs(), p_rate = rate_of(m.q, m.W);
+    const double sign = p.dot(n.q.coeffs()) < 0.0 ? -1.0 : 1.0;
+    const Vec4 q = sign * n.q.coeffs(), q_rate = sign * rate_of(n.q, n.W);
+    const Vec4 at = mixed(value, p, q, p_rate, q_rate);
+    const Vec4 moving = mixed(slope, p, q, p_rate, q_rate) / H;
+    const double per_size = 1.0 / at.norm();
+    const Quat turned(Vec4(per_size * at));
+    const Quat rate(Vec4(per_size * moving));
+    return BodyStep::at_instant(mixed(value, m.r, n.r, m.v, n.v), turned.toRotationMatrix(),
+                                mixed(slope, m.r, n.r, m.v, n.v) / H,
+                                2.0 * (turned.conjugate() * rate).vec());
+  }
+
+  /// Memories change evenly.
+  [[nodiscard]] std::vector<double> history(const InteractionRef& ref, double s) const {
+    const auto first = static_cast<std::size_t>(ref.first_history);
+    std::vector<double> list(static_cast<std::size_t>(system.traits(ref).history_size));
+    for (std::size_t k = 0; k < list.size(); ++k)
+      list[k] = (1.0 - s) * from.history[first + k] + s * to.history[first + k];
+    return list;
+  }
+};
+
+ForceKinks::ForceKinks(const System& system) : system_(&system) {
+  for (const InteractionRef& ref : system.interactions())
+    if (const InteractionTraits& traits = system.traits(ref);
+        traits.piecewise || traits.has_barrier || traits.unilateral > 0)
+      items_.push_back(ref);
+  const Nodes& nodes = system.nodes();
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (nodes.group(g).piecewise()) groups_.push_back(g);
+}
+
+ForcePieces ForceKinks::pieces(const Between& states, double s, double histories) const {
+  ForcePieces found;
+  StepContext still;
+  still.t_n = states.from.t + s * states.H;
+  still.tangents = false;
+  const std::array<double, kMaxRows> no_multipliers{};
+  for (const InteractionRef& ref : items_) {
+    const std::vector<double> history = states.history(ref, histories);
+    const BodyStep a = states.body(ref.a, s), b = states.body(ref.b, s);
+    system_->group(ref.group).pieces(
+        ref.item, PairStep{a, b, still, no_multipliers.data(), history.data()}, found);
+  }
+  if (groups_.empty()) return found;
+  const Cubic value = cubic_at(s), slope = slope_at(s);
+  const State &from = states.from, &to = states.to;
+  std::vector<double> x(from.node_x.size()), v(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const auto mixed = [&](const Cubic& c) {
+      return c.from * from.node_x[k] + c.to * to.node_x[k] +
+             states.H * (c.rate_from * from.node_v[k] + c.rate_to * to.node_v[k]);
+    };
+    x[k] = mixed(value);
+    v[k] = mixed(slope) / states.H;
+  }
+  const Nodes& nodes = system_->nodes();
+  const NodeStep instant{.x_n = x.data(),
+                         .x_n1 = x.data(),
+                         .u = nodes.no_displacement().data(),
+                         .v_n = v.data(),
+                         .v_n1 = v.data(),
+                         .context = still,
+                         .alpha_f = 1.0,
+                         .rate = 0.0};
+  for (const int g : groups_)
+    nodes.group(g).pieces(instant, from.element_history.data() + nodes.first_history(g), found);
+  return found;
+}
+
+std::optional<double> ForceKinks::first(const State& from, const State& to,
+                                        const Margins& margins) const {
+  if (none()) return std::nullopt;
+  const Between states{*system_, from, to, to.t - from.t};
+  const auto kink = first(states, margins.kink, &ForcePieces::kinks, false);
+  const auto jump = first(states, margins.jump, &ForcePieces::jumps, false);
+  return kink && jump ? std::min(kink, jump) : kink ? kink : jump;
+}
+
+std::optional<double> ForceKinks::first_turn(const State& from, const State& to,
+                                             double margin) const {
+  if (none()) return std::nullopt;
+  return first({*system_, from, to, to.t - from.t}, margin, &ForcePieces::slips, true);
+}
+
+bool ForceKinks::passed(const State& from, const State& to) const {
+  if (none()) return false;
+  const Between states{*system_, from, to, to.t - from.t};
+  const ForcePieces before = pieces(states, 0.0, 0.0), after = pieces(states, 1.0, 1.0);
+  const auto same_state = [](double x, double y) {
+    return (std::abs(x) < 1.0 && std::abs(y) < 1.0) || x == y;
+  };
+  return before.kinks != after.kinks || before.jumps != after.jumps ||
+         !std::ranges::equal(before.slips, after.slips, same_state);
+}
+
+/// Forces of rows are means over a step, at its middle: the line through those of this step and the
+/// one before. @eq{break-away}
+std::optional<double> ForceKinks::break_away(const State& from, const State& to) const {
+  const double H = to.t - from.t, apart = 0.5 * (H + from.dt_last);
+  if (none() || !(from.dt_last > 0.0)) return std::nullopt;
+  double first = 1.0;
+  const auto look = [&](double before, double now, double least, double most) {
+    const double slope = (now - before) / apart;
+    const double bound = slope > 0.0 ? most : least;
+    if (slope == 0.0 || !std::isfinite(bound) || before <= least || before >= most) return;
+    const double later = (bound - now) / slope;
+    if (later > 0.0 && now > least && now < most) first = std::min(first, 0.5 + later / H);
+  };
+  const Between states{*system_, from, to, H};
+  const ForcePieces before = pieces(states, 0.0, 0.0), after = pieces(states, 1.0, 1.0);
+  for (std::size_t k = 0; k < std::min(before.slips.size(), after.slips.size()); ++k)
+    if (before.slips[k] != 0.0 && after.slips[k] != 0.0)
+      look(before.slips[k], after.slips[k], -1.0, 1.0);
+  for (const InteractionRef& ref : items_) {
+    const InteractionTraits& traits = system_->traits(ref);
+    for (int row = 0; row < traits.unilateral; ++row) {
+      const int entry = ref.first_history + traits.unilateral_entry +
+                        row * static_cast<int>(kNumbersOf<UnilateralMemory>);
+      look(read_record<UnilateralMemory>(from.history.data() + entry).force,
+           read_record<UnilateralMemory>(to.history.data() + entry).force, 0.0,
+           std::numeric_limits<double>::infinity());
+    }
+  }
+  if (!(first < 1.0)) return std::nullopt;
+  return first;
+}
+
+std::optional<double> ForceKinks::first(const Between& states, double margin,
+                                        std::vector<double> ForcePieces::*sort, bool kept) const {
+  if (2.0 * margin >= 1.0) return std::nullopt;
+  const double begin = kept ? 0.0 : margin;
+  const auto names = [&](double s) { return pieces(states, s, kept ? 0.0 : s).*sort; };
+  const std::vector<double> start = names(begin);
+  if (start.empty()) return std::nullopt;
+  double before = begin, after = begin;
+  for (int k = 1; k <= kCompared; ++k) {
+    before = after;
+    after = begin + k * (1.0 - margin - begin) / kCompared;
+    if (names(after) != start) break;
+    if (k == kCompared) return std::nullopt;
+  }
+  while (after - before > kNarrow * margin) {
+    const double middle = 0.5 * (before + after);
+    if (!(middle > before && middle < after)) break;
+    (names(middle) == start ? before : after) = middle;
+  }
+  return after;
+}
+
+}  // namespace polhode

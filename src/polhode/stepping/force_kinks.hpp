@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+/// Kinks of forces within a step: where an interaction or an element group passes from one smooth
+/// piece of its force to the next, as a servo at its limit, a spring that acts on one side, a law
+/// with corners, a cable that goes slack. @eq{force-kink}
+class ForceKinks {
+ public:
+  explicit ForceKinks(const System& system);
+
+  /// Whether no force of the system has kinks.
+  [[nodiscard]] bool none() const { return items_.empty() && groups_.empty(); }
+  /// Parts of a step at its start and its end that are not searched: for kinks, and for jumps.
+  struct Margins {
+    double kink = 0.0, jump = 0.0;
+  };
+  /// Part of a step from one state to another at which the first passage is complete; nothing if
+  /// there is none. Cubic polynomials of positions through both ends, with their velocities, tell
+  /// where the system is between them.
+  [[nodiscard]] std::optional<double> first(const State& from, const State& to,
+                                            const Margins& margins) const;
+  /// Part of a step at which the first motion with dry friction has turned around, likewise. Turns
+  /// at its start count.
+  [[nodiscard]] std::optional<double> first_turn(const State& from, const State& to,
+                                                 double margin) const;
+  /// Part of a step at whose end something that sticks, or rests on a stop that is a row, is held
+  /// by as much as it can be, by the forces of this step and the one before; nothing if that is
+  /// later, or it does not stick in both.
+  [[nodiscard]] std::optional<double> break_away(const State& from, const State& to) const;
+  /// Whether a step has led from one piece of a force to another one, or to another state of
+  /// sticking and slipping.
+  [[nodiscard]] bool passed(const State& from, const State& to) const;
+
+ private:
+  struct Between;
+  /// Pieces of all forces. @param histories  Part of the step at which they are taken.
+  [[nodiscard]] ForcePieces pieces(const Between& states, double part, double histories) const;
+  /// First passage between pieces of one sort. @param kept  Histories remain those at the start.
+  [[nodiscard]] std::optional<double> first(const Between& states, double margin,
+                                            std::vector<double> ForcePieces::*sort,
+                                            bool kept) const;
+
+  const System* system_;
+  std::vector<InteractionRef> items_;  ///< With kinks.
+  std::vector<int> groups_;            ///< Element groups with kinks.
+};
+
+}  // namespace polhode
