@@ -5,6 +5,8 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,6 +106,35 @@ double lifted(double t, double m) {
   return s < 0.0 ? 0.0 : 11.0 / (6.0 * m) * s * s * s;
 }
 
+/// Depth below the free length of a mass that falls from a height h above it into a cable with
+/// stiffness k and damping c, which pulls only: N = max(0, k x + c ẋ) where it is longer.
+double caught(double t, double h, double k, double c, double m) {
+  const double decay = 0.5 * c / m, w = std::sqrt(k / m - decay * decay), rest = m * kGravity / k;
+  double x = -h, v = 0.0, from = 0.0;
+  for (;;) {
+    // Free, until the cable is taut: x + v s + g s²/2 = 0, going down.
+    const double free = (-v + std::sqrt(v * v - 2.0 * kGravity * x)) / kGravity, s = t - from;
+    if (s < free) return x + v * s + 0.5 * kGravity * s * s;
+    from += free;
+    v += kGravity * free;
+    const auto taut = [&](double u) {
+      const double A = -rest, B = (v + decay * A) / w, e = std::exp(-decay * u);
+      const double at = rest + e * (A * std::cos(w * u) + B * std::sin(w * u));
+      const double rate =
+          e * ((w * B - decay * A) * std::cos(w * u) - (w * A + decay * B) * std::sin(w * u));
+      return std::pair(at, rate);
+    };
+    const auto pulls = [&](double u) { return k * taut(u).first + c * taut(u).second > 0.0; };
+    double lasts = 0.0, step = 1e-3;
+    while (lasts < 3.0 && pulls(lasts + step)) lasts += step;
+    for (int halving = 0; halving < 50; ++halving)
+      if (pulls(lasts + (step *= 0.5))) lasts += step;
+    if (t - from < lasts || lasts > 2.9) return taut(t - from).first;
+    std::tie(x, v) = taut(lasts);
+    from += lasts;
+  }
+}
+
 /// Drawn to a by a PD controller from a time on: m ẍ = P (a − x) − D ẋ.
 double drawn(double t, double from, double a, double P, double D, double m) {
   const double s = t - from, decay = 0.5 * D / m, w = std::sqrt(P / m - decay * decay);
@@ -152,6 +183,16 @@ std::vector<Known> known() {
        "extrapolation", [](double t) { return over_a_jump(t, 1.5, 6.0, 0.3); }},
       {"DryFrictionOfASoftBristle", rail(thrown, ", friction: {force: 5, stiffness: 1e4}", ""),
        "order 2", [](double t) { return with_dry_friction(t, 6.0, 5.0, 2.0); }, 1e-3},
+      {"ACableThatIsDamped",
+       rail("", "",
+            "cables:\n  rope: {through: [[ground, [0, 0, 2]], [ball, [0, 0, 0]]], "
+            "stiffness: 7680, free_length: 2.4, damping: 60}\n"),
+       "extrapolation", [](double t) { return -0.4 - caught(t, 0.4, 3200.0, 60.0, 2.0); }},
+      {"ACableThatRunsOverItsPoints",
+       rail("", "",
+            "cables:\n  rope: {through: [[ground, [0, 0, 2]], [ball, [0, 0, 0]]], slides: "
+            "true, stiffness: 7680, free_length: 2.4, damping: 60}\n"),
+       "extrapolation", [](double t) { return -0.4 - caught(t, 0.4, 3200.0, 60.0, 2.0); }},
       {"DryFriction", rail(thrown, ", friction: {force: 5}", ""), "order 2",
        [](double t) { return with_dry_friction(t, 6.0, 5.0, 2.0); }, 2e-5},
       {"ALawOfDryFriction",
@@ -170,6 +211,10 @@ std::vector<Known> known() {
             "loads:\n  push: {type: joint_force, joint: guide, force: "
             "11*t}\ncontacts: {default: {law: rigid}}\n"),
        "order 2", [](double t) { return lifted(t, 2.0); }},
+      {"LiftingOffAStopWithABand",
+       rail("", ", limits: {lower: 0}",
+            "loads:\n  push: {type: joint_force, joint: guide, force: 11*t}\n"),
+       "extrapolation", [](double t) { return lifted(t, 2.0); }, 2e-4},
       drawn_by("AControllerWhoseSetpointJumps", "0.1*step(t, 1.013)", ""),
       drawn_by("AControllerThatIsSwitchedOn", "0.1",
                "events:\n  first: {at: 0, off: [hold]}\n  then: {at: 1.013, on: [hold]}\n"),

@@ -106,7 +106,7 @@ void Cable::evaluate(const PairStep& step, PairTerms& t) const {
   const bool green = spec_.strain == BarStrain::green, conserving = step.context.conserving;
   const Stretch x = stretch(step);
   add_mass_coupling(step, spec_.coupled_mass, t);
-  const double force = k_ * x.taut + c * x.ratio * x.rate, N = x.ratio * force;
+  const double force = k_ * x.taut + damper(x), N = x.ratio * force;
   const Vec3 n = x.per_rho * x.u_alpha, F = -N * n;
   const Vec3 &z_a = x.z_a.at_alpha, &z_b = x.z_b.at_alpha;
   const auto add = [](Vec6& wrench, const Vec3& f, const Vec3& m) {
@@ -115,7 +115,8 @@ void Cable::evaluate(const PairStep& step, PairTerms& t) const {
   };
   add(t.wrench_b, F, z_b.cross(F));
   add(t.wrench_a, -F, -z_a.cross(F));
-  if (step.context.tangents && (x.ratio != 0.0 || x.D_taut != 0.0)) {
+  const bool limp = force == 0.0 && is_limp(x);
+  if (step.context.tangents && !limp && (x.ratio != 0.0 || x.D_taut != 0.0)) {
     Mat3x12 D_u_n1;
     D_u_n1 << -Mat3::Identity(), hat(x.z_a.at_n1), Mat3::Identity(), -hat(x.z_b.at_n1);
     const Mat3x12 D_u = af * D_u_n1;
@@ -151,21 +152,35 @@ void Cable::evaluate(const PairStep& step, PairTerms& t) const {
   clear_ground_sides(step, t);
 }
 
+bool Cable::is_limp(const Stretch& x) const {
+  return spec_.tension_only && k_ * x.taut + spec_.damping * x.ratio * x.rate <= 0.0;
+}
+
+double Cable::damper(const Stretch& x) const {
+  return is_limp(x) ? -k_ * x.taut : spec_.damping * x.ratio * x.rate;
+}
+
+/// Slack, taut, or let go faster than the cable shortens by itself. A damper acts at once.
 void Cable::pieces(const PairStep& step, ForcePieces& pieces) const {
-  if (spec_.tension_only) pieces.add(is_taut(measure(length(step))) ? 1.0 : 0.0);
+  if (!spec_.tension_only) return;
+  const Stretch x = stretch(step);
+  const bool taut_now = is_taut(measure(x.l_n1));
+  pieces.add(!taut_now ? 0.0 : is_limp(x) ? 2.0 : 1.0, spec_.damping > 0.0);
 }
 
 Work Cable::work(const PairStep& step) const {
   const Stretch x = stretch(step);
-  const double y = taut(measure(x.l_n1)), rate = x.ratio * x.rate;
-  return {.stored = 0.5 * k_ * y * y, .dissipated = spec_.damping * rate * rate * step.context.dt};
+  const double y = taut(measure(x.l_n1));
+  return {.stored = 0.5 * k_ * y * y, .dissipated = damper(x) * x.ratio * x.rate * step.context.dt};
 }
 
 double Cable::length(const PairStep& step) const { return stretch(step).l_n1; }
 
 double Cable::tension(const PairStep& step) const {
-  const double l = stretch(step).l_n1;
-  return k_ * taut(measure(l)) * (spec_.strain == BarStrain::green ? l / spec_.free_length : 1.0);
+  const Stretch x = stretch(step);
+  if (!is_taut(measure(x.l_n1))) return 0.0;
+  return (k_ * taut(measure(x.l_n1)) + damper(x)) *
+         (spec_.strain == BarStrain::green ? x.l_n1 / spec_.free_length : 1.0);
 }
 
 }  // namespace polhode

@@ -29,7 +29,7 @@ struct CableSpec {
 ///   @eq{cable-gradient}
 ///
 /// on b conserves the energy exactly, also in a step in which the cable becomes taut or slack. The
-/// damper of a cable acts on its elongation while taut.
+/// damper of a cable acts on its elongation while taut, and never makes it push: N ≥ 0.
 class Cable : public InteractionItem {
  public:
   static constexpr const char* kKind = "cable";
@@ -46,13 +46,17 @@ class Cable : public InteractionItem {
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
 
-  /// Elastic tension at t_{n+1}, along the present length [N].
+  /// Tension at t_{n+1} with that of the damper, along the present length [N].
   [[nodiscard]] double tension(const PairStep& step) const;
   [[nodiscard]] double length(const PairStep& step) const;  ///< At t_{n+1} [m].
 
  private:
   struct Stretch;
   [[nodiscard]] Stretch stretch(const PairStep& step) const;
+  /// Whether its damper would make it push.
+  [[nodiscard]] bool is_limp(const Stretch& x) const;
+  /// Force of the damper, no larger than lets a cable go slack [N].
+  [[nodiscard]] double damper(const Stretch& x) const;
   [[nodiscard]] double measure(double length) const;
   /// y − s_0: elongation in the measure that stores energy.
   [[nodiscard]] double taut(double s) const;

@@ -149,6 +149,11 @@ RunningCable::Tension RunningCable::tension(const NodeStep& step, const Course& 
     taut_part = std::abs((taut(c.n1) ? c.n1 : low) - spec_.free_length) / std::abs(way);
   T.damper = spec_.damping * taut_part * taut_part * c.rate;
   T.by_rate = spec_.damping * taut_part * taut_part;
+  if (spec_.tension_only && spec_.damping > 0.0 &&
+      T.elastic + T.damper <= 0.0) {  // no cable pushes
+    T.damper = -T.elastic;
+    T.by_n1 = T.by_rate = 0.0;
+  }
   if (spec_.tension)
     T.active += step.context.load_factor * (*spec_.tension)(step.context.t_alpha());
   if (!spec_.muscle) return T;
@@ -239,10 +244,13 @@ ElementReport RunningCable::evaluate(const NodeStep& step, const double* history
   return {};
 }
 
-/// Taut or slack, and by span on its obstacle or straight.
+/// Slack, taut, or let go faster than it shortens by itself; and by span on its obstacle or
+/// straight.
 void RunningCable::pieces(const NodeStep& instant, const double*, ForcePieces& pieces) const {
   const Course c = course(instant);
-  pieces.add(taut(c.n1) ? 1.0 : 0.0);
+  const Tension T = tension(instant, c);
+  const bool pulls = spec_.damping == 0.0 || T.elastic + T.damper > 0.0;
+  pieces.add(!taut(c.n1) ? 0.0 : pulls ? 1.0 : 2.0, spec_.damping > 0.0);
   for (const int wound : c.wound_of) pieces.add(wound >= 0 ? 1.0 : 0.0);
 }
 

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // States of friction and stops of a joint, for steps that end where these change.
+#include <polhode/contact_laws/contact_phase.hpp>
 #include <polhode/joints/resistance_coordinates.hpp>
 
 namespace polhode {
 
 void Resistance::pieces(const View& v, ForcePieces& pieces) const {
-  for_limits([&](const JointLimits&, bool, int memory) {
-    pieces.slips.push_back(read_record<StopMemory>(v.memory + memory).side);
+  for_limits([&](const JointLimits& limits, bool, int memory) {
+    // 1 where nothing rests on the stop, and the less the more presses on it.
+    const auto stop = read_record<StopMemory>(v.memory + memory);
+    const double load = -stop.side * stop.acceleration * limits.inertia;
+    const double scale = limits.law.stiffness * limits.law.tolerance;
+    const auto phase = static_cast<contact::ContactPhase>(static_cast<int>(stop.phase));
+    const bool rests = load > 0.0 && (phase == contact::ContactPhase::rest ||
+                                      phase == contact::ContactPhase::landing);
+    pieces.slips.push_back(rests ? (scale - load) / (scale + load) : 1.0);
   });
   if (!data_.friction) return;
   const auto memory = read_record<BristleMemory>(v.memory);

@@ -87,7 +87,10 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       verdict = {.fine = false};
     } else if (verdict.fine && automatic()) {
       const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
-      verdict = impact || by_stop.fine ? by_stop : judge(before, state, H, fresh, refused);
+      const auto passage = impact ? std::nullopt : judge_passage(before, state, H);
+      verdict = passage                  ? *passage
+                : impact || by_stop.fine ? by_stop
+                                         : judge(before, state, H, fresh, refused);
     }
     if (verdict.fine) {
       report.accepted = true;

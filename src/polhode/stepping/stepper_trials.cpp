@@ -70,8 +70,7 @@ double Stepper::Impl::extrapolated_error(const State& from, const State& reached
 /// Part of a step at whose end it has passed the first kink of a force within it, of order 2 the
 /// first turn of a motion with dry friction; nothing if there is none, but near its ends. An error
 /// of δ in the time of a jump changes velocities by δ, in that of a kink by δ², so that the root of
-/// the tolerance is near enough.
-/// @eq{force-kink}
+/// the tolerance is near enough. @eq{force-kink} @eq{break-away}
 /// @param planned  Length of a step that no kink ends [s].
 std::optional<double> Stepper::Impl::to_kink(const State& from, const State& reached, double H,
                                              double planned) const {
@@ -170,7 +169,6 @@ void Stepper::Impl::prepare_short_step(State& state, double H) {
   const BodySums before_it = single.ledger().sums(state);
   project_velocities(system, state);
   single.ledger().add_jump(state, before_it, 0.0);
-  state.dt_last = H;
 }
 
 /// Verdict on a step of order 2 in which a force passes from one smooth piece to another, or a
@@ -181,7 +179,9 @@ std::optional<Stepper::Impl::Verdict> Stepper::Impl::judge_passage(const State& 
                                                                    State& reached, double H) {
   if (composed() || !watches_jumps() || !force_kinks.passed(from, reached)) return std::nullopt;
   const double rest = std::max(H, control.horizon - from.t);
+  companion_iterations = 0;
   const auto difference = difference_of({0.5, 0.5}, from, reached, H, rest);
+  reached.ledger.iterations += companion_iterations;
   if (!difference) return Verdict{.fine = false, .factor = 0.5};
   // Velocities have the rounding of positions, by the step.
   const double allowed = std::max(kImpactError * control.tolerance, least_error * rest / H);
@@ -216,13 +216,8 @@ Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State&
 
 Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, double H, bool fresh,
                                             Refused& refused) {
-  companion_iterations = 0;
-  if (const auto passage = judge_passage(from, reached, H)) {
-    reached.ledger.iterations += companion_iterations;
-    if (!passage->fine) refused = {H, passage->error, refused.count};
-    return *passage;
-  }
   Verdict v;
+  companion_iterations = 0;
   double power = 0.5, safety = kSafety, longest = kMaxFactor;
   const double allowed = std::max(allowed_error(from, H), extrapolates() ? table->rounding() : 0.0);
   std::optional<double> error;
