@@ -334,7 +334,9 @@ struct LoadStepper::Impl {
       std::optional<LimitPoint> end;
       if (!unilateral() && equilibria > 1 && from - factor_before > kSame)
         end = extrapolate_limit(*system, options, {before, state, factor_before, from});
-      if (goes_down(state, next_factor(from, limit), !step.free_motions.empty(), end)) return true;
+      if (goes_down(state, end ? std::min(from + longest(), limit) : next_factor(from, limit),
+                    !step.free_motions.empty(), end))
+        return true;
       std::string soft;
       if (equilibria > 0) {
         newton.assemble_at(state, from);
