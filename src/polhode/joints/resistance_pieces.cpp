@@ -12,8 +12,9 @@ void Resistance::pieces(const View& v, ForcePieces& pieces) const {
     const double load = -stop.side * stop.acceleration * limits.inertia;
     const double scale = limits.law.stiffness * limits.law.tolerance;
     const auto phase = static_cast<contact::ContactPhase>(static_cast<int>(stop.phase));
-    const bool rests = load > 0.0 && (phase == contact::ContactPhase::rest ||
-                                      phase == contact::ContactPhase::landing);
+    const bool rests =
+        load > 0.0 && limits.restitution < 1.0 &&
+        (phase == contact::ContactPhase::rest || phase == contact::ContactPhase::landing);
     pieces.slips.push_back(rests ? (scale - load) / (scale + load) : 1.0);
   });
   if (!data_.friction) return;

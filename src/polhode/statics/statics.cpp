@@ -324,10 +324,7 @@ struct LoadStepper::Impl {
         return true;
       }
       if (stopped()) return false;
-      if (!jumps.empty()) {
-        explain(step, {}, state, factor);
-        return false;
-      }
+      if (!jumps.empty()) return explain(step, {}, state, factor), false;
       increment = kCut * (factor - from);
       if (increment >= kMinIncrement * size(from)) continue;
       increment = first;
@@ -342,7 +339,7 @@ struct LoadStepper::Impl {
         newton.assemble_at(state, from);
         soft = newton.softest().text;
       }
-      if (end) report.limit_points.push_back(std::move(*end));
+      if (end) report.limit_points.push_back(*end);
       explain(step, soft, state, factor);
       return false;
     }
