@@ -15,6 +15,8 @@ constexpr int kMaxSteps = 2000;
 constexpr double kMove = 0.02, kMaxMove = 0.1;
 /// Factors by which the damping may change from one step to the next.
 constexpr double kEase = 0.5, kBrake = 1.5;
+/// Factor on the damping where the displacement is against the unbalanced force.
+constexpr double kUphill = 4.0;
 /// Step size, as a part of the model's size, below which Newton's method is tried, and number of
 /// steps between trials.
 constexpr double kSmallSpeed = 1e-3;
@@ -83,6 +85,12 @@ StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
     x_ = rhs_;
     solver_.solve(x_);
     if (!x_.allFinite()) break;
+    double power = 0.0;
+    for (int i = 0; i < matrix_.movable(); ++i) power += x_[i] * rhs_[i];
+    if (power < 0.0) {  // uphill, as beyond a limit point the stiffness is negative
+      resistance *= kUphill;
+      continue;
+    }
     double move = 0.0;
     for (int i = 0; i < matrix_.movable(); ++i)
       move = std::max(move, std::abs(x_[i]) / (i < bodies && i % 6 >= 3 ? 1.0 : length));
