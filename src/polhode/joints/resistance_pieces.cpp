@@ -5,9 +5,16 @@
 
 namespace polhode {
 
+namespace {
+
+/// Name of the state of a stop on which nothing rests.
+constexpr double kFree = 2.0;
+
+}  // namespace
+
 void Resistance::pieces(const View& v, ForcePieces& pieces) const {
   for_limits([&](const JointLimits& limits, bool, int memory) {
-    // 1 where nothing rests on the stop, and the less the more presses on it.
+    // The more presses on a stop at rest, the less.
     const auto stop = read_record<StopMemory>(v.memory + memory);
     const double load = -stop.side * stop.acceleration * limits.inertia;
     const double scale = limits.law.stiffness * limits.law.tolerance;
@@ -15,7 +22,7 @@ void Resistance::pieces(const View& v, ForcePieces& pieces) const {
     const bool rests =
         load > 0.0 && limits.restitution < 1.0 &&
         (phase == contact::ContactPhase::rest || phase == contact::ContactPhase::landing);
-    pieces.slips.push_back(rests ? (scale - load) / (scale + load) : 1.0);
+    pieces.slips.push_back(rests ? (scale - load) / (scale + load) : kFree);
   });
   if (!data_.friction) return;
   const auto memory = read_record<BristleMemory>(v.memory);

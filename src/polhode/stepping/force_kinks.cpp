@@ -138,7 +138,10 @@ std::optional<double> ForceKinks::first(const State& from, const State& to,
 std::optional<double> ForceKinks::first_turn(const State& from, const State& to,
                                              double margin) const {
   if (none()) return std::nullopt;
-  return first({*system_, from, to, to.t - from.t}, margin, &ForcePieces::slips, true);
+  const Between states{*system_, from, to, to.t - from.t};
+  const std::vector<double> start = pieces(states, 0.0, 0.0).slips;
+  if (std::ranges::none_of(start, [](double x) { return std::abs(x) == 1.0; })) return std::nullopt;
+  return first(states, margin, &ForcePieces::slips, true);
 }
 
 bool ForceKinks::passed(const State& from, const State& to) const {

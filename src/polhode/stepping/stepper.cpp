@@ -87,7 +87,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       verdict = {.fine = false};
     } else if (verdict.fine && automatic()) {
       const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
-      const auto passage = impact ? std::nullopt : judge_passage(before, state, H);
+      const auto passage = impact ? std::nullopt : judge_passage(before, state, H, planned);
       verdict = passage                  ? *passage
                 : impact || by_stop.fine ? by_stop
                                          : judge(before, state, H, fresh, refused);

@@ -211,7 +211,7 @@ struct Stepper::Impl {
   [[nodiscard]] std::optional<double> to_kink(const State& from, const State& reached, double H,
                                               double planned) const;
   void prepare_short_step(State& state, double H);
-  std::optional<Verdict> judge_passage(const State& from, State& reached, double H);
+  std::optional<Verdict> judge_passage(const State& from, State& reached, double H, double planned);
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
 
   void choose_scheme(State& state, double room);

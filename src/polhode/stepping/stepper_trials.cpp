@@ -78,9 +78,9 @@ std::optional<double> Stepper::Impl::to_kink(const State& from, const State& rea
   if (!composed()) {
     if (!watches_jumps()) return std::nullopt;
     const double whole = first_step(from) / H;
-    const auto turn =
-        force_kinks.first_turn(from, reached, kImpactError * control.tolerance * whole);
-    if (turn) return turn;
+    const double at_end = control.tolerance * whole;
+    if (const auto turn = force_kinks.first_turn(from, reached, at_end))
+      return std::max(*turn, at_end);
     // By halves of the way: the line through two forces is the better the shorter they act.
     const auto away = force_kinks.break_away(from, reached);
     const double near = std::sqrt(control.tolerance) * whole;
@@ -174,13 +174,17 @@ void Stepper::Impl::prepare_short_step(State& state, double H) {
 /// Verdict on a step of order 2 in which a force passes from one smooth piece to another, or a
 /// joint begins or ceases to stick; nothing if there is none, or it matters little. The velocity
 /// then has an error of first or second order, which the rest of the run multiplies by its time:
-/// that is measured by two halves, and is allowed a part of the tolerance. @eq{force-kink}
+/// that is measured by three thirds, which reverse the velocity normal to rows as one step does,
+/// and is allowed a part of the tolerance. @eq{force-kink}
+/// @param planned  Length of a step without a passage [s].
 std::optional<Stepper::Impl::Verdict> Stepper::Impl::judge_passage(const State& from,
-                                                                   State& reached, double H) {
+                                                                   State& reached, double H,
+                                                                   double planned) {
   if (composed() || !watches_jumps() || !force_kinks.passed(from, reached)) return std::nullopt;
   const double rest = std::max(H, control.horizon - from.t);
   companion_iterations = 0;
-  const auto difference = difference_of({0.5, 0.5}, from, reached, H, rest);
+  constexpr double kThird = 1.0 / 3.0;
+  const auto difference = difference_of({kThird, kThird, kThird}, from, reached, H, rest);
   reached.ledger.iterations += companion_iterations;
   if (!difference) return Verdict{.fine = false, .factor = 0.5};
   // Velocities have the rounding of positions, by the step.
@@ -194,6 +198,7 @@ std::optional<Stepper::Impl::Verdict> Stepper::Impl::judge_passage(const State& 
   }
   if (*difference <= kPassesUnnoticed * allowed) return std::nullopt;
   begin_anew(reached);
+  v.factor = std::max(1.0, planned / H);
   return v;
 }
 

@@ -9,8 +9,8 @@ namespace polhode {
 struct ForcePieces {
   std::vector<double> kinks;  ///< Names of pieces at whose ends a derivative of the force jumps.
   std::vector<double> jumps;  ///< Of pieces at whose ends the force itself may jump.
-  /// States of friction and stops that the last step left: ±1, or in between the part of the limit
-  /// under which it sticks; ±1 whether the motion still has the direction of slip; 0 for none.
+  /// States of friction and stops: ±1 slips, between them the part of the limit under which it
+  /// sticks or rests, 2 free; and ±1 whether a motion still has the direction of its slip.
   std::vector<double> slips;
 
   [[nodiscard]] bool operator==(const ForcePieces&) const = default;
