@@ -249,7 +249,7 @@ ElementReport RunningCable::evaluate(const NodeStep& step, const double* history
 void RunningCable::pieces(const NodeStep& instant, const double*, ForcePieces& pieces) const {
   const Course c = course(instant);
   const Tension T = tension(instant, c);
-  const bool pulls = spec_.damping == 0.0 || T.elastic + T.damper > 0.0;
+  const bool pulls = !spec_.tension_only || spec_.damping == 0.0 || T.elastic + T.damper > 0.0;
   pieces.add(!taut(c.n1) ? 0.0 : pulls ? 1.0 : 2.0, spec_.damping > 0.0);
   for (const int wound : c.wound_of) pieces.add(wound >= 0 ? 1.0 : 0.0);
 }

@@ -31,6 +31,14 @@ struct Scales {
   double length = 1.0;               ///< Radius of gyration about the joint [m].
 };
 
+/// Inertia of a body about its point of a joint, body axes; zero if it does not move [kg m²].
+Mat3 inertia_about(const Model& model, int body, const Vec3& Z) {
+  if (body == kGround) return Mat3::Zero();
+  const BodySpec& b = model.bodies[static_cast<std::size_t>(body)];
+  if (b.fixed || !(b.mass > 0.0)) return Mat3::Zero();
+  return b.inertia + b.mass * (Z.squaredNorm() * Mat3::Identity() - Z * Z.transpose());
+}
+
 Scales scales_of(const Model& model, const JointSpec& joint) {
   const double g = model.gravity.norm() > 0.0 ? model.gravity.norm() : kEarth;
   Scales s;
@@ -100,7 +108,9 @@ JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
     f.stiffness = spec.stiffness.value_or(most > 0.0 ? most / way : 1.0);
     const double inertia = slides ? s.mass : s.inertia;
     f.damping = spec.damping.value_or(kBristleDamping * std::sqrt(f.stiffness * inertia));
-    f.inertia = slides ? s.mass : joint.type == "revolute" ? s.about_axis : s.inertia;
+    f.mass = s.mass;
+    f.inertia = {inertia_about(model, joint.a, joint.Z_a),
+                 inertia_about(model, joint.b, joint.Z_b)};
     r.friction = f;
   }
   if (slides && joint.limits)

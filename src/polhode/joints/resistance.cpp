@@ -16,6 +16,9 @@ namespace {
 
 using contact::Cone;
 
+/// Rounding of a bristle that slips, as a part of its cone.
+constexpr double kOnCone = 1e-9;
+
 /// Force of a stop at t_{n+αf} and its slope by the gap at t_{n+1}.
 contact::ForceAndSlope stop_force(const Stop& stop, const PairStep& step) {
   return contact::stop_force(stop.law(), {.at_n = stop.gap_n(),
@@ -297,14 +300,25 @@ Resistance::Bristle Resistance::left_bristle(const View& v, const Motion& m) con
   const StepContext& c = v.step.context;
   if (!b.slips || !(c.dt > 0.0) || is_load_step(c)) return b;
   const JointFriction& f = *data_.friction;
-  const Vec3 before = rates(v, v.q_n, start_of(v.step.a), start_of(v.step.b)),
-             rate = rates(v, v.q_n1, v.step.a, v.step.b);
-  const Vec3 held = b.acting + f.inertia / (f.stiffness * c.dt) * (rate - before);
+  const Vec3 before = rates(v, v.q_n, start_of(v.step.a), start_of(v.step.b));
+  Vec3 rate = rates(v, v.q_n1, v.step.a, v.step.b);
+  // Like the bristle, in the axes of a at t_n.
+  if (kind_ == Kind::spherical) rate = v.step.a.Lambda_n * (v.step.a.Lambda_n1.transpose() * rate);
+  const Vec3 change = rate - before;
+  const auto about = [&](const Vec3& axis) { return inertia_about(axis, v.step.a, v.step.b); };
+  Vec3 inertia = Vec3::Constant(f.mass);
+  if (kind_ == Kind::revolute) inertia[0] = about(v.q_n1.R_a.col(kZ));
+  if (kind_ == Kind::universal) inertia = {about(v.q_n1.R_a.col(kX)), about(v.q_n1.R_b.col(kY)), 0};
+  if (kind_ == Kind::spherical) inertia.setConstant(about(change.normalized()));
+  if (kind_ == Kind::cylindrical && f.radius > 0.0)  // of the sleeve's surface
+    inertia[1] = about(v.q_n1.R_a.col(kZ)) / (f.radius * f.radius);
+  const Vec3 held = b.acting + inertia.cwiseProduct(change) / (f.stiffness * c.dt);
   for (int k = 0; k < cones(); ++k) {
     const Vec3 of_cone = cones() == 1 ? Vec3(Vec3::Ones()) : Vec3(Vec3::Unit(k));
     const Vec3 old = b.at_n1.cwiseProduct(of_cone), wanted = held.cwiseProduct(of_cone);
-    if (!(rate.dot(old) < 0.0)) continue;
-    const double size = wanted.norm(), most = std::min(old.norm(), slip(v, k).force / f.stiffness);
+    const double limit = slip(v, k).force / f.stiffness;
+    if (!(rate.dot(old) < 0.0) || old.norm() < (1.0 - kOnCone) * limit) continue;
+    const double size = wanted.norm(), most = std::min(old.norm(), limit);
     b.at_n1 += (size > most ? most / size : 1.0) * wanted - old;
     if (cones() == 1) b.slips = size > most;
   }

@@ -28,7 +28,9 @@ struct JointFriction {
   double constant = 0.0;   ///< Slip force [N] or moment [N m] without load.
   double stiffness = 1.0;  ///< Of the bristle [N/m]; for rotations alone [N m/rad].
   double damping = 0.0;    ///< Of the sticking bristle [N s/m], [N m s/rad].
-  double inertia = 0.0;    ///< Of the motion that it resists, reduced [kg] or [kg m²].
+  double mass = 0.0;       ///< Of the joint's bodies, reduced [kg].
+  /// Inertias of a and b about the joint, body axes; zero: does not move [kg m²].
+  std::array<Mat3, 2> inertia{Mat3::Zero(), Mat3::Zero()};
 };
 
 /// Stops of one free coordinate: barriers at both limits, or rows that only push; with restitution.
@@ -156,6 +158,8 @@ class Resistance {
   /// The bristle over the step as it is left behind: after a turn of the motion without the
   /// deflection of the old direction.
   [[nodiscard]] Bristle left_bristle(const View& view, const Motion& m) const;
+  /// Reduced inertia of the joint's bodies about a world axis [kg m²].
+  [[nodiscard]] double inertia_about(const Vec3& axis, const BodyStep& a, const BodyStep& b) const;
   /// Rates of the coordinates including levers, of a ball in world axes, at an instant.
   [[nodiscard]] Vec3 rates(const View& view, const Configuration& q, const BodyStep& a,
                            const BodyStep& b) const;

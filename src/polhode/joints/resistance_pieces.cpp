@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// States of friction and stops of a joint, for steps that end where these change.
+// States of friction and stops of a joint, for steps that end where these change, and its inertia.
 #include <polhode/contact_laws/contact_phase.hpp>
 #include <polhode/joints/resistance_coordinates.hpp>
 
@@ -11,6 +11,17 @@ namespace {
 constexpr double kFree = 2.0;
 
 }  // namespace
+
+double Resistance::inertia_about(const Vec3& axis, const BodyStep& a, const BodyStep& b) const {
+  double per_inertia = 0.0;
+  const BodyStep* const bodies[2] = {&a, &b};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3 e = bodies[i]->Lambda_n1.transpose() * axis;
+    const double own = e.dot(data_.friction->inertia[i] * e);
+    if (own > 0.0) per_inertia += 1.0 / own;
+  }
+  return per_inertia > 0.0 ? 1.0 / per_inertia : 0.0;
+}
 
 void Resistance::pieces(const View& v, ForcePieces& pieces) const {
   for_limits([&](const JointLimits& limits, bool, int memory) {

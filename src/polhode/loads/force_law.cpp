@@ -94,8 +94,9 @@ constexpr int kRoughest = 2;
 /// First kink of a law above x, where a smooth piece ends.
 TimeBreak next_kink(const TimeFunction& law, double x) {
   TimeBreak b = law.next_break(x, kFastest);
-  while (b.exists() && b.derivative > kRoughest) b = law.next_break(b.t, kFastest);
-  return b;
+  for (std::size_t k = 0; k < kMostKinks && b.exists() && b.derivative > kRoughest; ++k)
+    b = law.next_break(b.t, kFastest);
+  return b.derivative > kRoughest ? TimeBreak{} : b;
 }
 
 bool has_kinks(const TimeFunctionPtr& law) { return law && next_kink(*law, -kFastest).exists(); }

@@ -17,6 +17,10 @@ constexpr double kMove = 0.02, kMaxMove = 0.1;
 constexpr double kEase = 0.5, kBrake = 1.5;
 /// Factor on the damping where the displacement is against the unbalanced force.
 constexpr double kUphill = 4.0;
+/// Cosine between the two below which it is; gaps of joints give smaller ones. Largest number of
+/// such steps in turn.
+constexpr double kAgainst = -0.1;
+constexpr int kMostUphill = 20;
 /// Step size, as a part of the model's size, below which Newton's method is tried, and number of
 /// steps between trials.
 constexpr double kSmallSpeed = 1e-3;
@@ -61,6 +65,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
   const int bodies = 6 * system_->body_count();
   const double length = system_->length_scale();
   double resistance = 0.0, first_force = 0.0;
+  int uphill = 0;
   bool coasts = false;  // without more resistance than at the start
   for (int k = 0; k < kMaxSteps && !stopped(); ++k) {
     if (!(assemble().least_volume > 0.0)) break;
@@ -85,12 +90,17 @@ StaticStep StaticNewton::relax(State& state, double load_factor, bool slack) {
     x_ = rhs_;
     solver_.solve(x_);
     if (!x_.allFinite()) break;
-    double power = 0.0;
-    for (int i = 0; i < matrix_.movable(); ++i) power += x_[i] * rhs_[i];
-    if (power < 0.0) {  // uphill, as beyond a limit point the stiffness is negative
-      resistance *= kUphill;
+    double power = 0.0, displaced = 0.0, pushed = 0.0;
+    for (int i = 0; i < matrix_.movable(); ++i) {
+      power += x_[i] * rhs_[i];
+      displaced += x_[i] * x_[i];
+      pushed += rhs_[i] * rhs_[i];
+    }
+    if (power < kAgainst * std::sqrt(displaced * pushed) && uphill++ < kMostUphill) {
+      resistance *= kUphill;  // as beyond a limit point, where the stiffness is negative
       continue;
     }
+    uphill = 0;
     double move = 0.0;
     for (int i = 0; i < matrix_.movable(); ++i)
       move = std::max(move, std::abs(x_[i]) / (i < bodies && i % 6 >= 3 ? 1.0 : length));

@@ -80,26 +80,30 @@ struct ForceKinks::Between {
 
 ForceKinks::ForceKinks(const System& system) : system_(&system) {
   for (const InteractionRef& ref : system.interactions())
-    if (const InteractionTraits& traits = system.traits(ref);
-        traits.piecewise || traits.has_barrier || traits.unilateral > 0)
+    if (const InteractionTraits& traits = system.traits(ref); traits.piecewise)
       items_.push_back(ref);
+    else if (traits.has_barrier || traits.unilateral > 0)
+      stops_.push_back(ref);
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     if (nodes.group(g).piecewise()) groups_.push_back(g);
 }
 
-ForcePieces ForceKinks::pieces(const Between& states, double s, double histories) const {
+ForcePieces ForceKinks::pieces(const Between& states, double s, double histories,
+                               bool stops) const {
   ForcePieces found;
   StepContext still;
   still.t_n = states.from.t + s * states.H;
   still.tangents = false;
   const std::array<double, kMaxRows> no_multipliers{};
-  for (const InteractionRef& ref : items_) {
+  const auto add = [&](const InteractionRef& ref) {
     const std::vector<double> history = states.history(ref, histories);
     const BodyStep a = states.body(ref.a, s), b = states.body(ref.b, s);
     system_->group(ref.group).pieces(
         ref.item, PairStep{a, b, still, no_multipliers.data(), history.data()}, found);
-  }
+  };
+  std::ranges::for_each(items_, add);
+  if (stops) std::ranges::for_each(stops_, add);
   if (groups_.empty()) return found;
   const Cubic value = cubic_at(s), slope = slope_at(s);
   const State &from = states.from, &to = states.to;
@@ -128,7 +132,7 @@ ForcePieces ForceKinks::pieces(const Between& states, double s, double histories
 
 std::optional<double> ForceKinks::first(const State& from, const State& to,
                                         const Margins& margins) const {
-  if (none()) return std::nullopt;
+  if (items_.empty() && groups_.empty()) return std::nullopt;
   const Between states{*system_, from, to, to.t - from.t};
   const auto kink = first(states, margins.kink, &ForcePieces::kinks, false);
   const auto jump = first(states, margins.jump, &ForcePieces::jumps, false);
@@ -137,9 +141,9 @@ std::optional<double> ForceKinks::first(const State& from, const State& to,
 
 std::optional<double> ForceKinks::first_turn(const State& from, const State& to,
                                              double margin) const {
-  if (none()) return std::nullopt;
+  if (items_.empty()) return std::nullopt;
   const Between states{*system_, from, to, to.t - from.t};
-  const std::vector<double> start = pieces(states, 0.0, 0.0).slips;
+  const std::vector<double> start = pieces(states, 0.0, 0.0, false).slips;
   if (std::ranges::none_of(start, [](double x) { return std::abs(x) == 1.0; })) return std::nullopt;
   return first(states, margin, &ForcePieces::slips, true);
 }
@@ -147,7 +151,7 @@ std::optional<double> ForceKinks::first_turn(const State& from, const State& to,
 bool ForceKinks::passed(const State& from, const State& to) const {
   if (none()) return false;
   const Between states{*system_, from, to, to.t - from.t};
-  const ForcePieces before = pieces(states, 0.0, 0.0), after = pieces(states, 1.0, 1.0);
+  const ForcePieces before = pieces(states, 0.0, 0.0, true), after = pieces(states, 1.0, 1.0, true);
   const auto same_state = [](double x, double y) {
     return (std::abs(x) < 1.0 && std::abs(y) < 1.0) || x == y;
   };
@@ -159,7 +163,8 @@ bool ForceKinks::passed(const State& from, const State& to) const {
 /// one before. @eq{break-away}
 std::optional<double> ForceKinks::break_away(const State& from, const State& to) const {
   const double H = to.t - from.t, apart = 0.5 * (H + from.dt_last);
-  if (none() || !(from.dt_last > 0.0)) return std::nullopt;
+  // Forces from before a jump have no line to those after it.
+  if (none() || from.past_count == 0 || !(from.dt_last > 0.0)) return std::nullopt;
   double first = 1.0;
   const auto look = [&](double before, double now, double least, double most) {
     const double slope = (now - before) / apart;
@@ -169,11 +174,11 @@ std::optional<double> ForceKinks::break_away(const State& from, const State& to)
     if (later > 0.0 && now > least && now < most) first = std::min(first, 0.5 + later / H);
   };
   const Between states{*system_, from, to, H};
-  const ForcePieces before = pieces(states, 0.0, 0.0), after = pieces(states, 1.0, 1.0);
+  const ForcePieces before = pieces(states, 0.0, 0.0, true), after = pieces(states, 1.0, 1.0, true);
   for (std::size_t k = 0; k < std::min(before.slips.size(), after.slips.size()); ++k)
     if (before.slips[k] != 0.0 && after.slips[k] != 0.0)
       look(before.slips[k], after.slips[k], -1.0, 1.0);
-  for (const InteractionRef& ref : items_) {
+  const auto look_at_rows = [&](const InteractionRef& ref) {
     const InteractionTraits& traits = system_->traits(ref);
     for (int row = 0; row < traits.unilateral; ++row) {
       const int entry = ref.first_history + traits.unilateral_entry +
@@ -182,7 +187,9 @@ std::optional<double> ForceKinks::break_away(const State& from, const State& to)
            read_record<UnilateralMemory>(to.history.data() + entry).force, 0.0,
            std::numeric_limits<double>::infinity());
     }
-  }
+  };
+  std::ranges::for_each(items_, look_at_rows);
+  std::ranges::for_each(stops_, look_at_rows);
   if (!(first < 1.0)) return std::nullopt;
   return first;
 }
@@ -191,7 +198,7 @@ std::optional<double> ForceKinks::first(const Between& states, double margin,
                                         std::vector<double> ForcePieces::*sort, bool kept) const {
   if (2.0 * margin >= 1.0) return std::nullopt;
   const double begin = kept ? 0.0 : margin;
-  const auto names = [&](double s) { return pieces(states, s, kept ? 0.0 : s).*sort; };
+  const auto names = [&](double s) { return pieces(states, s, kept ? 0.0 : s, false).*sort; };
   const std::vector<double> start = names(begin);
   if (start.empty()) return std::nullopt;
   double before = begin, after = begin;

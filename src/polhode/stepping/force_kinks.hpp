@@ -16,18 +16,18 @@ class ForceKinks {
   explicit ForceKinks(const System& system);
 
   /// Whether no force of the system has kinks.
-  [[nodiscard]] bool none() const { return items_.empty() && groups_.empty(); }
+  [[nodiscard]] bool none() const { return items_.empty() && groups_.empty() && stops_.empty(); }
   /// Parts of a step at its start and its end that are not searched: for kinks, and for jumps.
   struct Margins {
     double kink = 0.0, jump = 0.0;
   };
   /// Part of a step from one state to another at which the first passage is complete; nothing if
-  /// there is none. Cubic polynomials of positions through both ends, with their velocities, tell
-  /// where the system is between them.
+  /// there is none. Between them positions follow cubic polynomials through both ends, with their
+  /// velocities.
   [[nodiscard]] std::optional<double> first(const State& from, const State& to,
                                             const Margins& margins) const;
-  /// Part of a step at which the first motion with dry friction has turned around, likewise. Turns
-  /// at its start count.
+  /// Part of a step at which the first motion with dry friction has turned around; nothing if none
+  /// has. Turns at its start count.
   [[nodiscard]] std::optional<double> first_turn(const State& from, const State& to,
                                                  double margin) const;
   /// Part of a step at whose end something that sticks, or rests on a stop that is a row, is held
@@ -41,7 +41,9 @@ class ForceKinks {
  private:
   struct Between;
   /// Pieces of all forces. @param histories  Part of the step at which they are taken.
-  [[nodiscard]] ForcePieces pieces(const Between& states, double part, double histories) const;
+  /// @param stops  Also of interactions with stops alone, of which nothing changes in between.
+  [[nodiscard]] ForcePieces pieces(const Between& states, double part, double histories,
+                                   bool stops) const;
   /// First passage between pieces of one sort. @param kept  Histories remain those at the start.
   [[nodiscard]] std::optional<double> first(const Between& states, double margin,
                                             std::vector<double> ForcePieces::*sort,
@@ -49,6 +51,7 @@ class ForceKinks {
 
   const System* system_;
   std::vector<InteractionRef> items_;  ///< With kinks.
+  std::vector<InteractionRef> stops_;  ///< With stops alone.
   std::vector<int> groups_;            ///< Element groups with kinks.
 };
 

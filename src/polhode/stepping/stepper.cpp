@@ -81,8 +81,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
                                    (automatic() && H * single.jump() > allowed_error(before, H)));
     const bool stopped = impact || (!composed() && !system.contacts() && single.stopped());
     Verdict verdict{.fine = report.newton.converged && !met_stop, .factor = 0.5};
-    const std::optional<double> kink =
-        verdict.fine && kinked < kTrialsOfKink ? to_kink(before, state, H, planned) : std::nullopt;
+    const std::optional<double> kink = verdict.fine && !impact && kinked < kTrialsOfKink
+                                           ? to_kink(before, state, H, planned)
+                                           : std::nullopt;
     if (kink) {
       verdict = {.fine = false};
     } else if (verdict.fine && automatic()) {

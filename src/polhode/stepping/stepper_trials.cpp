@@ -68,9 +68,9 @@ double Stepper::Impl::extrapolated_error(const State& from, const State& reached
 }
 
 /// Part of a step at whose end it has passed the first kink of a force within it, of order 2 the
-/// first turn of a motion with dry friction; nothing if there is none, but near its ends. An error
-/// of δ in the time of a jump changes velocities by δ, in that of a kink by δ², so that the root of
-/// the tolerance is near enough. @eq{force-kink} @eq{break-away}
+/// first turn of a motion with dry friction; nothing if there is none, but near its ends. Errors δ
+/// in the time of a jump change velocities by δ, in that of a kink by δ²: the root of the tolerance
+/// is near enough. @eq{force-kink} @eq{break-away}
 /// @param planned  Length of a step that no kink ends [s].
 std::optional<double> Stepper::Impl::to_kink(const State& from, const State& reached, double H,
                                              double planned) const {
@@ -165,7 +165,7 @@ void Stepper::Impl::find_length(State& state, double way) {
 /// part is of the order of the square of the step that left it; the short step would turn it into
 /// reactions, and these into dry friction. @eq{force-kink}
 void Stepper::Impl::prepare_short_step(State& state, double H) {
-  if (system.rows() == 0 || !(H < kMuchShorter * state.dt_last)) return;
+  if (system.rows() == 0 || !system.drives().empty() || !(H < kMuchShorter * state.dt_last)) return;
   const BodySums before_it = single.ledger().sums(state);
   project_velocities(system, state);
   single.ledger().add_jump(state, before_it, 0.0);
@@ -173,9 +173,9 @@ void Stepper::Impl::prepare_short_step(State& state, double H) {
 
 /// Verdict on a step of order 2 in which a force passes from one smooth piece to another, or a
 /// joint begins or ceases to stick; nothing if there is none, or it matters little. The velocity
-/// then has an error of first or second order, which the rest of the run multiplies by its time:
-/// that is measured by three thirds, which reverse the velocity normal to rows as one step does,
-/// and is allowed a part of the tolerance. @eq{force-kink}
+/// then has an error of first or second order, which the rest of the run multiplies by its time.
+/// Three thirds measure it, as they reverse the velocity normal to rows like one step; it may be a
+/// part of the tolerance. @eq{force-kink}
 /// @param planned  Length of a step without a passage [s].
 std::optional<Stepper::Impl::Verdict> Stepper::Impl::judge_passage(const State& from,
                                                                    State& reached, double H,
