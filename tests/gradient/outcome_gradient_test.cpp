@@ -37,7 +37,7 @@ TEST(OutcomeGradient, OfVelocitiesOfRedundantLoopsIsThatOfRuns) {
                                   {"variables.L", "variables.w", "bodies.rod_1.mass", "gravity.1"},
                                   {"bodies.rod_4.velocity.x"}},
                                  3e-3, 1e-9),
-            1e-7);  // of round-off over 300 small steps
+            1e-7);  // round-off of 300 small steps
 }
 
 constexpr const char* kThrow = R"yaml(

@@ -160,8 +160,8 @@ TEST(SoftOnSoft, OfTrianglesAndQuadraticFacesIsPressedAtEveryStep) {
 }
 
 /// In statics the equilibrium of triangles and quadratic faces is stable and the same one at any
-/// number of load steps. Two blocks of tet15, with faces of seven nodes, have two stable ones,
-/// which differ by 0.07 % of the force.
+/// number of load steps. Two blocks of tet15, with faces of seven nodes, have two stable ones;
+/// their forces differ by 0.07 %.
 // @tests{patch-triangles}
 TEST(SoftOnSoft, OfTrianglesAndQuadraticFacesHasOneEquilibrium) {
   for (const char* element : {"wedge6", "hex20"}) {

@@ -21,8 +21,8 @@ namespace {
 using Tag = tinyxml2::XMLElement;
 using Transform = Eigen::Affine3d;
 
-/// Nodes of a scene one in the other, all nodes, and triangles of all of them, at most. Instances
-/// of nodes can stand in each other, so that a short file may have many.
+/// Nodes of a scene one in the other, all nodes, and triangles of all of them, at most. A short
+/// file may have many, as instances are nested.
 constexpr int kDeepestNode = 200;
 constexpr std::size_t kMostNodes = 1'000'000, kMostTriangles = 20'000'000;
 constexpr const char* kWriteAgain = "Export the file again, or convert it to STL or OBJ";

@@ -228,8 +228,8 @@ void StepDerivative::add_coupled_masses() {
   }
 }
 
-/// Force and moment of a body of which parts count. Below 8e6 roundings of the inertia a force says
-/// nothing.
+/// Force and moment of a body of which parts count. Forces below 8e6 roundings of the inertia are
+/// noise.
 std::pair<double, double> StepDerivative::force_scales(const Trial& step, int b) const {
   const double rounding = 8e6 * kIncrementRounding * 4.0 / (dt_ * dt_);
   const BodyData& body = system_->bodies()[static_cast<std::size_t>(b)];

@@ -310,7 +310,7 @@ Resistance::Bristle Resistance::left_bristle(const View& v, const Motion& m) con
   if (kind_ == Kind::revolute) inertia[0] = about(v.q_n1.R_a.col(kZ));
   if (kind_ == Kind::universal) inertia = {about(v.q_n1.R_a.col(kX)), about(v.q_n1.R_b.col(kY)), 0};
   if (kind_ == Kind::spherical) inertia.setConstant(about(change.normalized()));
-  if (kind_ == Kind::cylindrical && f.radius > 0.0)  // of the sleeve's surface
+  if (kind_ == Kind::cylindrical && f.radius > 0.0)  // inertia at the sleeve's surface [kg]
     inertia[1] = about(v.q_n1.R_a.col(kZ)) / (f.radius * f.radius);
   const Vec3 held = b.acting + inertia.cwiseProduct(change) / (f.stiffness * c.dt);
   for (int k = 0; k < cones(); ++k) {

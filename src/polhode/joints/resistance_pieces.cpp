@@ -25,7 +25,7 @@ double Resistance::inertia_about(const Vec3& axis, const BodyStep& a, const Body
 
 void Resistance::pieces(const View& v, ForcePieces& pieces) const {
   for_limits([&](const JointLimits& limits, bool, int memory) {
-    // The more presses on a stop at rest, the less.
+    // Falling with the load of a stop at rest, and 1 without one.
     const auto stop = read_record<StopMemory>(v.memory + memory);
     const double load = -stop.side * stop.acceleration * limits.inertia;
     const double scale = limits.law.stiffness * limits.law.tolerance;

@@ -98,7 +98,7 @@ class ResistanceLaw {
   [[nodiscard]] bool jumps() const { return !jumps_.empty(); }
   /// Whether the law has kinks.
   [[nodiscard]] bool piecewise() const { return kinks_; }
-  /// @param memory  Forces of its rows, likewise.
+  /// Adds its smooth piece at a rate. @param memory  As below.
   void piece(double v, const double* memory, ForcePieces& pieces) const;
   /// Number of rows, one for each jump upwards.
   [[nodiscard]] int rows() const { return static_cast<int>(rows_.size()); }

@@ -148,10 +148,13 @@ std::optional<double> ForceKinks::first_turn(const State& from, const State& to,
   return first(states, margin, &ForcePieces::slips, true);
 }
 
-bool ForceKinks::passed(const State& from, const State& to) const {
-  if (none()) return false;
+ForceKinks::Ends ForceKinks::ends(const State& from, const State& to) const {
+  if (none()) return {};
   const Between states{*system_, from, to, to.t - from.t};
-  const ForcePieces before = pieces(states, 0.0, 0.0, true), after = pieces(states, 1.0, 1.0, true);
+  return {pieces(states, 0.0, 0.0, true), pieces(states, 1.0, 1.0, true)};
+}
+
+bool ForceKinks::Ends::passed() const {
   const auto same_state = [](double x, double y) {
     return (std::abs(x) < 1.0 && std::abs(y) < 1.0) || x == y;
   };
@@ -161,7 +164,8 @@ bool ForceKinks::passed(const State& from, const State& to) const {
 
 /// Forces of rows are means over a step, at its middle: the line through those of this step and the
 /// one before. @eq{break-away}
-std::optional<double> ForceKinks::break_away(const State& from, const State& to) const {
+std::optional<double> ForceKinks::break_away(const State& from, const State& to,
+                                             const Ends& ends) const {
   const double H = to.t - from.t, apart = 0.5 * (H + from.dt_last);
   // Forces from before a jump have no line to those after it.
   if (none() || from.past_count == 0 || !(from.dt_last > 0.0)) return std::nullopt;
@@ -173,11 +177,9 @@ std::optional<double> ForceKinks::break_away(const State& from, const State& to)
     const double later = (bound - now) / slope;
     if (later > 0.0 && now > least && now < most) first = std::min(first, 0.5 + later / H);
   };
-  const Between states{*system_, from, to, H};
-  const ForcePieces before = pieces(states, 0.0, 0.0, true), after = pieces(states, 1.0, 1.0, true);
-  for (std::size_t k = 0; k < std::min(before.slips.size(), after.slips.size()); ++k)
-    if (before.slips[k] != 0.0 && after.slips[k] != 0.0)
-      look(before.slips[k], after.slips[k], -1.0, 1.0);
+  const std::vector<double>&before = ends.before.slips, &after = ends.after.slips;
+  for (std::size_t k = 0; k < std::min(before.size(), after.size()); ++k)
+    if (before[k] != 0.0 && after[k] != 0.0) look(before[k], after[k], -1.0, 1.0);
   const auto look_at_rows = [&](const InteractionRef& ref) {
     const InteractionTraits& traits = system_->traits(ref);
     for (int row = 0; row < traits.unilateral; ++row) {

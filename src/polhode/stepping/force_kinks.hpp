@@ -30,13 +30,18 @@ class ForceKinks {
   /// has. Turns at its start count.
   [[nodiscard]] std::optional<double> first_turn(const State& from, const State& to,
                                                  double margin) const;
-  /// Part of a step at whose end something that sticks, or rests on a stop that is a row, is held
-  /// by as much as it can be, by the forces of this step and the one before; nothing if that is
-  /// later, or it does not stick in both.
-  [[nodiscard]] std::optional<double> break_away(const State& from, const State& to) const;
-  /// Whether a step has led from one piece of a force to another one, or to another state of
-  /// sticking and slipping.
-  [[nodiscard]] bool passed(const State& from, const State& to) const;
+  /// Pieces of all forces at both ends of a step.
+  struct Ends {
+    ForcePieces before, after;
+    /// Whether they are others at its end, or there is another state of sticking and slipping.
+    [[nodiscard]] bool passed() const;
+  };
+  [[nodiscard]] Ends ends(const State& from, const State& to) const;
+  /// Part of a step at whose end something that sticks, or rests on a stop, is held by as much as
+  /// it can be, by the forces of this step and the one before; nothing if that is later, or it does
+  /// not stick in both.
+  [[nodiscard]] std::optional<double> break_away(const State& from, const State& to,
+                                                 const Ends& ends) const;
 
  private:
   struct Between;

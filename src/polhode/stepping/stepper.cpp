@@ -81,14 +81,17 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
                                    (automatic() && H * single.jump() > allowed_error(before, H)));
     const bool stopped = impact || (!composed() && !system.contacts() && single.stopped());
     Verdict verdict{.fine = report.newton.converged && !met_stop, .factor = 0.5};
+    ForceKinks::Ends ends;  // of a step of order 2
+    if (verdict.fine && automatic() && !composed() && watches_jumps())
+      ends = force_kinks.ends(before, state);
     const std::optional<double> kink = verdict.fine && !impact && kinked < kTrialsOfKink
-                                           ? to_kink(before, state, H, planned)
+                                           ? to_kink(before, state, H, planned, ends)
                                            : std::nullopt;
     if (kink) {
       verdict = {.fine = false};
     } else if (verdict.fine && automatic()) {
       const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
-      const auto passage = impact ? std::nullopt : judge_passage(before, state, H, planned);
+      const auto passage = impact ? std::nullopt : judge_passage(before, state, H, planned, ends);
       verdict = passage                  ? *passage
                 : impact || by_stop.fine ? by_stop
                                          : judge(before, state, H, fresh, refused);

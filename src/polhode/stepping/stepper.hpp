@@ -25,8 +25,8 @@ struct StepControl {
   double horizon = 1.0;        ///< Duration of the run, over which order 2 spreads its error [s].
   double min_step = 0.0;       ///< 0: 1e-9 of the horizon or 1e-6 of the fixed step [s].
   double max_step = 0.0;       ///< 0: none [s].
-  /// Whether loads have values that are set between steps, from the motion up to there: continuous
-  /// controllers.
+  /// Continuous controllers: they set values of loads between steps, from the motion up to there,
+  /// and hold them over the first step.
   bool lagged = false;
   NewtonOptions newton;
   bool conserving = true;  ///< Potentials in discrete-gradient form.

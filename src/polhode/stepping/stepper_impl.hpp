@@ -209,9 +209,10 @@ struct Stepper::Impl {
   using Refused = RefusedStep;
   Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
   [[nodiscard]] std::optional<double> to_kink(const State& from, const State& reached, double H,
-                                              double planned) const;
+                                              double planned, const ForceKinks::Ends& ends) const;
   void prepare_short_step(State& state, double H);
-  std::optional<Verdict> judge_passage(const State& from, State& reached, double H, double planned);
+  std::optional<Verdict> judge_passage(const State& from, State& reached, double H, double planned,
+                                       const ForceKinks::Ends& ends);
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
 
   void choose_scheme(State& state, double room);

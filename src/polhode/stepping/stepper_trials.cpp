@@ -71,26 +71,26 @@ double Stepper::Impl::extrapolated_error(const State& from, const State& reached
 /// first turn of a motion with dry friction; nothing if there is none, but near its ends. Errors δ
 /// in the time of a jump change velocities by δ, in that of a kink by δ²: the root of the tolerance
 /// is near enough. @eq{force-kink} @eq{break-away}
-/// @param planned  Length of a step that no kink ends [s].
+/// @param planned  Length of a step that no kink ends [s]. @param ends  Pieces, at order 2.
 std::optional<double> Stepper::Impl::to_kink(const State& from, const State& reached, double H,
-                                             double planned) const {
+                                             double planned, const ForceKinks::Ends& ends) const {
   if (force_kinks.none() || !automatic() || H <= least_step()) return std::nullopt;
-  if (!composed()) {
-    if (!watches_jumps()) return std::nullopt;
-    const double whole = first_step(from) / H;
-    const double at_end = control.tolerance * whole;
-    if (const auto turn = force_kinks.first_turn(from, reached, at_end))
-      return std::max(*turn, at_end);
-    // By halves of the way: the line through two forces is the better the shorter they act.
-    const auto away = force_kinks.break_away(from, reached);
-    const double near = std::sqrt(control.tolerance) * whole;
-    return away && *away > near ? std::optional(std::max(0.5 * *away, near)) : std::nullopt;
+  if (composed()) {
+    const State* given_up = extrapolates() ? table->given_up_at() : nullptr;
+    const double whole = std::max(planned, H) / H;
+    const ForceKinks::Margins near{.kink = std::sqrt(2.0 * control.tolerance) * whole,
+                                   .jump = control.tolerance * whole};
+    return force_kinks.first(from, given_up ? *given_up : reached, near);
   }
-  const State* given_up = extrapolates() ? table->given_up_at() : nullptr;
-  const double whole = std::max(planned, H) / H;
-  const ForceKinks::Margins near{.kink = std::sqrt(2.0 * control.tolerance) * whole,
-                                 .jump = control.tolerance * whole};
-  return force_kinks.first(from, given_up ? *given_up : reached, near);
+  if (!watches_jumps()) return std::nullopt;
+  const double whole = first_step(from) / H, at_end = control.tolerance * whole;
+  if (const auto turn = force_kinks.first_turn(from, reached, at_end))
+    return std::max(*turn, at_end);
+  // By halves of the way: the line through two forces is the better the shorter they act.
+  const auto away = force_kinks.break_away(from, reached, ends);
+  const double near = std::sqrt(control.tolerance) * whole;
+  if (!away || *away <= near) return std::nullopt;
+  return std::max(0.5 * *away, near);
 }
 
 /// Error estimate of a single step from its two halves, whose error is a quarter; it does not use
@@ -179,8 +179,9 @@ void Stepper::Impl::prepare_short_step(State& state, double H) {
 /// @param planned  Length of a step without a passage [s].
 std::optional<Stepper::Impl::Verdict> Stepper::Impl::judge_passage(const State& from,
                                                                    State& reached, double H,
-                                                                   double planned) {
-  if (composed() || !watches_jumps() || !force_kinks.passed(from, reached)) return std::nullopt;
+                                                                   double planned,
+                                                                   const ForceKinks::Ends& ends) {
+  if (!ends.passed()) return std::nullopt;
   const double rest = std::max(H, control.horizon - from.t);
   companion_iterations = 0;
   constexpr double kThird = 1.0 / 3.0;

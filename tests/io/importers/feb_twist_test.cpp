@@ -143,7 +143,7 @@ TEST_F(FebTwist, ABarTwistedBetweenRigidGripsHasRivlinsMomentAndForce) {
   }
 }
 
-// What is elastic does not depend on the load steps.
+// Independence of an elastic bar of the load steps.
 TEST_F(FebTwist, LoadStepsChangeNothing) {
   const auto one = reaction(twisted(1, 0.5, kBulk, 1)), four = reaction(twisted(1, 0.5, kBulk, 4));
   EXPECT_NEAR(one[0], four[0], 1e-6 * std::abs(one[0]));

@@ -50,7 +50,7 @@ TEST_F(UrdfWords, OriginsHaveQuaternions) {
   const auto turn = [&](const std::string& origin) {
     return io::read_model(write(arm(origin)), {}).bodies.back().orientation;
   };
-  // The same rotation, and its quaternion with another length.
+  // One rotation by angles, by its quaternion, and by quaternions of other lengths.
   const Quat by_angles = turn("rpy='0.3 -0.4 1.1'");
   const Quat unit = by_angles.normalized();
   for (const double length : {1.0, 3.0, 1e-3})
