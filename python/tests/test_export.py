@@ -51,6 +51,18 @@ MODELS = {
                   "turning_damping": 0.02},
          "servo": {"type": "rotary_servo", "joint": "a", "angle": 0.5, "stiffness": 2, "damping": 0.1},
          "motor": {"type": "linear_motor", "joint": "b", "force": 1.5}}),
+    "forces, moments, dampers of free bodies": tree(
+        {"a": {"type": "revolute", "axis": [1, -1, 2], "start": 0.4},
+         "b": {"type": "prismatic", "axis": [1, 1, 0.3], "start": -0.05},
+         "c": {"type": "revolute", "axis": "y", "start": 2.5}},
+        {"carried": {"type": "force", "body": "second", "force": [0, 0, 8.829]},
+         "wind": {"type": "force", "body": "third", "at": [1.1, 0.3, 0.1], "force": [0.4, -0.3, 0.2]},
+         "jet": {"type": "force", "body": "free", "at_body": [0.3, 0.1, 0], "force": [0.1, 0.7, -0.4],
+                 "body_fixed": True},
+         "twist": {"type": "moment", "body": "arm", "moment": [0.3, 0.1, -0.5]},
+         "wheel": {"type": "moment", "body": "free", "moment": [0.02, -0.1, 0.03], "body_fixed": True},
+         "air": {"type": "vector_damper", "bodies": ["ground", "free"], "at_body": [[0, 0, 0]] * 2,
+                 "damping": 0.2, "turning_damping": 0.2}}),
     "universal, cylindrical, planar": tree(
         {"a": {"type": "universal", "axes": [[1, 1, 0], [1, -1, 1]], "start": {"rx": 0.3, "ry": -0.5}},
          "b": {"type": "cylindrical", "axis": [1, 1, 0.3], "start": {"z": 0.1, "rz": 0.6}},
@@ -117,6 +129,28 @@ def test_mjcf_moves_in_mujoco_as_here(name: str, tmp_path: pathlib.Path) -> None
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     compare(mujoco, model, data, m, inertias(m))
+
+
+def test_row_of_three_coordinates_is_one_in_mujoco(tmp_path: pathlib.Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    m = tree({"a": {"type": "revolute", "axis": [1, -1, 2]},
+              "b": {"type": "prismatic", "axis": [1, 1, 0.3], "start": -0.05},
+              "c": {"type": "revolute", "axis": "y", "start": 0.3}},
+             {"row": {"type": "coupling", "joints": ["a", "b", "c"], "factors": [2, 0.5], "offset": 0.35}})
+    m.export(tmp_path / "robot.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "robot.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert data.nefc == 1
+    assert data.efc_pos[0] == pytest.approx(0, abs=1e-14)
+    row = np.zeros((1, model.nv))
+    if mujoco.mj_isSparse(model):
+        mujoco.mju_sparse2dense(row, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
+    else:
+        row[:] = data.efc_J.reshape(1, -1)
+    at = [model.joint(name).dofadr[0] for name in "abc"]
+    assert row[0, at] == pytest.approx([1, -2, -0.5])
 
 
 def test_urdf_moves_in_mujoco_as_here(tmp_path: pathlib.Path) -> None:

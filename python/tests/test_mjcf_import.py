@@ -27,7 +27,7 @@ MODEL = """<mujoco>
         <site name="tip" pos="0.2 0.03 0.05"/>
       </body>
     </body>
-    <body name="free" pos="1 1 1"><freejoint/><inertial pos="0.1 0.05 0" mass="1" diaginertia="0.03 0.02 0.015"/>
+    <body name="free" pos="1 1 1">{free}<inertial pos="0.1 0.05 0" mass="1" diaginertia="0.03 0.02 0.015"/>
       <body name="ball" pos="0 0 -0.3"><joint name="b" type="ball" pos="0 0 0.1"/>
         <inertial pos="0.1 0.05 0" mass="0.5" diaginertia="0.03 0.02 0.015"/></body>
     </body>
@@ -111,6 +111,7 @@ CASES = {
         "controls": 'ctrl="0.4"'},
     "a medium": {"more": '<option density="40" viscosity="0.3"/>'},
     "gravity that is held in part": {"shoulder": 'damping="0.1"', "compensated": 'gravcomp="0.6"'},
+    "an armature of a free joint": {"free": '<joint type="free" armature="0.3"/>'},
     "a damping ratio of a sum": {"more": BELT.format("", f'<position {SUM} kp="4" dampratio="0.6" gear="1.2"/>'),
                                  "controls": 'ctrl="0.4"'},
 }
@@ -132,7 +133,7 @@ def end_in_mujoco(mujoco: Any, model: Any, bodies: list[str], step: float) -> An
 @pytest.mark.parametrize("name", CASES)
 def test_models_move_as_in_mujoco(name: str, tmp_path: pathlib.Path) -> None:
     mujoco = pytest.importorskip("mujoco")
-    parts = {"shoulder": "", "more": "", "controls": "", "compensated": "", **CASES[name]}
+    parts = {"shoulder": "", "more": "", "controls": "", "compensated": "", "free": "<freejoint/>", **CASES[name]}
     file = tmp_path / "robot.xml"
     file.write_text(MODEL.format(**parts))
     model = mujoco.MjModel.from_xml_path(str(file))

@@ -363,12 +363,13 @@ struct Simulation::Impl {
     const double given = model.analysis.assembly_tolerance;
     const double allowed = given > 0.0 ? given : to_assemble ? kMoveToAssemble : kMoveAsGiven;
     if (r.largest_move > allowed)
-      throw InputError(
-          "the start",
-          format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
-                 "radians), more than analysis.assembly_tolerance = {:.2g}",
-                 r.moved_body, r.largest_move, allowed),
-          "Give the body a position closer to the assembled one, or raise assembly_tolerance");
+      throw InputError("the start",
+                       format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
+                              "radians), more than analysis.assembly_tolerance = {:.2g}",
+                              r.moved_body, r.largest_move, allowed),
+                       "Give the body a position closer to the assembled one, in a robot's file by "
+                       "import.start, "
+                       "or raise assembly_tolerance");
   }
 
   /// Records elements compressed beyond the limit of their kind: the worst of each group.

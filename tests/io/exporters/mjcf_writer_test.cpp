@@ -162,6 +162,32 @@ loads:
   expect_same(model, read, 0.005, 10 * kRounding, kGrown);
 }
 
+// A row of three coordinates is a fixed tendon that <equality> holds.
+TEST_F(Exports, OfRowsForcesAndDampersAsAnMjcfMoveAsTheModel) {
+  const Model model = model_of(std::string(kBodies) + R"(
+  free: {mass: 1, inertia: [0.1, 0.2, 0.25], com: [0.1, 0.2, 0.3], position: [3, 0, 0], orientation: {axis: x, angle: 1}, velocity: [1, -2, 3], angular_velocity: [0.5, 1, -2]}
+joints:
+  shoulder: {type: revolute, bodies: [post, arm], at: [0.2, 0.1, 0.3], axis: [1, -1, 2]}
+  rail: {type: prismatic, bodies: [second, arm], at: [0.7, 0.2, 0.1], axis: [1, 1, 0.3], start: -0.05}
+  hinge: {type: revolute, bodies: [second, third], at: [1, 0.4, 0], axis: y, start: 0.3}
+loads:
+  row: {type: coupling, joints: [shoulder, rail, hinge], factors: [2, 0.5], offset: 0.35}
+  carried: {type: force, body: second, force: [0, 0, 8.829]}
+  wind: {type: force, body: third, at: [1.1, 0.3, 0.1], force: [0.4, -0.3, 0.2]}
+  jet: {type: force, body: free, at_body: [0.3, 0.1, 0], force: [0.1, 0.7, -0.4], body_fixed: true}
+  twist: {type: moment, body: arm, moment: [0.3, 0.1, -0.5]}
+  wheel: {type: moment, body: free, moment: [0.02, -0.1, 0.03], body_fixed: true}
+  air: {type: vector_damper, bodies: [ground, free], at_body: [[0, 0, 0], [0, 0, 0]], damping: 0.2, turning_damping: 0.2}
+)");
+  const std::string text = exported(model, "robot.xml").text;
+  EXPECT_THAT(text, AllOf(HasSubstr("gravcomp=\"0.6"), HasSubstr("<tendon name=\"row\""),
+                          HasSubstr("type=\"free\" damping=\"0.2")));
+  const Model read = again(model, "robot.xml");
+  EXPECT_EQ(read.loads.size(), 7U);
+  for (const double step : {0.02, 0.005, 0.001})
+    expect_same(model, read, step, 10 * kRounding, kGrown);
+}
+
 TEST_F(Exports, HaveTheStartAsKeyframe) {
   const std::string text = exported(model_of(R"(
 bodies:
@@ -222,6 +248,14 @@ joints:
   EXPECT_THAT(
       fault(bars + "loads:\n  m: {type: rotary_servo, joint: A, angle: 1, integral: 2}\n", "a.xml"),
       HasSubstr("loads.m: an MJCF has no servos with an integral"));
+  EXPECT_THAT(fault(bars + "loads:\n  m: {type: force, body: a, force: [0, 0, sin(t)]}\n", "a.xml"),
+              HasSubstr("loads.m: it is a function"));
+  EXPECT_THAT(
+      fault(bars + "loads:\n  m: {type: vector_damper, bodies: [ground, a], at: [[0, 0, 0], "
+                   "[0, 0, 0]], damping: 1}\n",
+            "a.xml"),
+      HasSubstr("loads.m: an MJCF has no dampers between two bodies but those of joints, "
+                "with one number for a free body, at its origin"));
 }
 
 }  // namespace

@@ -220,6 +220,41 @@ TEST_F(Mjcf, FreeJointsMayBeDamped) {
   }
 }
 
+// m v' = m g - a v' for the body's origin: the armature has no weight.
+TEST_F(Mjcf, FreeJointsMayHaveAnArmature) {
+  const std::string text =
+      "<option gravity='0 0 -9'/><worldbody><body name='b'><joint name='f' type='free' "
+      "armature='1'/>" +
+      kBall + "</body></worldbody>";
+  EXPECT_THAT(notes(text), HasSubstr("the armature of 'f' is a body on it, 'b_armature'"));
+  for (const double step : {0.1, 0.01, 0.001}) {
+    Model model = read(text);
+    EXPECT_EQ(model.bodies.at(1).mass, 2.0);
+    model.analysis.step = step;
+    Simulation simulation(model);
+    while (simulation.time() < 0.999) simulation.step(1.0);
+    EXPECT_NEAR(simulation.body("b").v.z(), -6.0 * simulation.time(), 1e-11) << step;
+  }
+}
+
+// A constraint with one joint holds its coordinate, in the file's unit from the reference.
+TEST_F(Mjcf, EqualitiesHoldACoordinate) {
+  const Model model = read(
+      "<compiler angle='radian'/><worldbody><body name='b'><joint name='j' "
+      "axis='0 1 0' ref='0.25'/>" +
+      kBall +
+      "</body></worldbody><equality><joint name='e' joint1='j' "
+      "polycoef='0.125 7 7'/></equality>");
+  const LoadSpec* row = load_of(model, "e");
+  ASSERT_NE(row, nullptr);
+  EXPECT_EQ(row->type, "coupling");
+  EXPECT_TRUE(row->others.empty());
+  Simulation simulation(model);
+  while (simulation.time() < 0.1) simulation.step(0.2);
+  const Mat3 R = simulation.body("b").Lambda();
+  EXPECT_NEAR(std::atan2(R(0, 2), R(0, 0)), 0.125, kRounding);
+}
+
 TEST_F(Mjcf, FilesAreIncludedOnce) {
   write("arm.xml", "<mujocoinclude><body name='arm'><joint/>" + kBall + "</body></mujocoinclude>");
   EXPECT_EQ(read_bodies("<include file='arm.xml'/>").bodies.size(), 2U);
@@ -301,8 +336,6 @@ TEST_F(Mjcf, WhatIsNotReadIsRefusedOrListed) {
               HasSubstr("the length of the tendon 't' is not a sum of coordinates"));
   EXPECT_THAT(fault(world + "<equality><flex flex='t'/></equality>"),
               HasSubstr("<flex> in <equality> is not read"));
-  EXPECT_THAT(fault(world + "<equality><joint joint1='j'/></equality>"),
-              HasSubstr("'j' is held at a value"));
   EXPECT_THAT(fault(world + "<equality><joint joint1='i' joint2='j'/></equality>"),
               HasSubstr("there is no joint 'i'. Joints: j."));
   EXPECT_THAT(fault(world + "<equality><joint joint1='j' joint2='j' polycoef='0 1 2'/></equality>"),
@@ -345,8 +378,8 @@ TEST_F(Mjcf, BodiesAndJointsThatCannotBeReadAreNamed) {
   EXPECT_THAT(joint("type='ball' frictionloss='2'"),
               HasSubstr("the ball joint 'j' has a friction loss"));
   EXPECT_THAT(joint("type='ball' range='0 1'"), HasSubstr("the ball joint 'j' has a limit"));
-  EXPECT_THAT(joint("type='free' armature='2'"),
-              HasSubstr("the free joint 'j' has a stiffness, friction or armature"));
+  EXPECT_THAT(joint("type='free' stiffness='2'"),
+              HasSubstr("the free joint 'j' has a stiffness or friction"));
   EXPECT_THAT(joint("class='no'"), HasSubstr("there is no class 'no'"));
   EXPECT_THAT(body_fault("<body name='a'><joint/>" + kBall +
                          "<body name='b'><freejoint name='f'/>" + kBall + "</body></body>"),

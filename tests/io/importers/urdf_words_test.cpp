@@ -14,7 +14,9 @@
 namespace polhode::urdf_words_tests {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class UrdfWords : public testing::Test {
  protected:
@@ -32,6 +34,13 @@ class UrdfWords : public testing::Test {
       return error.what();
     }
     return "none";
+  }
+  /// Notes of a report, one a line.
+  std::string notes(const std::string& inside) {
+    std::string text;
+    for (const io::ImportNote& n : io::expanded_model(write(inside)).report.notes)
+      text += n.what + "\n";
+    return text;
   }
   test::Scratch folder_;
 };
@@ -84,6 +93,35 @@ TEST_F(UrdfWords, AHingeWithoutLimitsIsSaid) {
   std::string notes;
   for (const io::ImportNote& n : io::expanded_model(write(text)).report.notes) notes += n.what;
   EXPECT_THAT(notes, HasSubstr("the joint 'j' has no <limit>, and no stops"));
+}
+
+// A box of no size stands for a link that has only a place.
+TEST_F(UrdfWords, BoxesOfNoSizeAreNoShapes) {
+  const auto box = [](const std::string& size) {
+    return arm("xyz='0 0 1'", "",
+               "<visual><geometry><box size='" + size + "'/></geometry></visual>");
+  };
+  EXPECT_TRUE(io::read_model(write(box("0 0 0")), {}).bodies.back().shapes.empty());
+  EXPECT_THAT(notes(box("0 0 0")), HasSubstr("a <box> of the size 0 0 0 has no surface"));
+  for (const char* size : {"0 0 1", "-1 1 1"})
+    EXPECT_THAT(fault(box(size)), HasSubstr("must be three numbers above 0")) << size;
+}
+
+TEST_F(UrdfWords, ConstraintsWithoutAnAgreedMeaningAreRefused) {
+  for (const std::string tag : {"constraint", "coupling"})
+    EXPECT_THAT(fault(arm("xyz='0 0 1'") + "\n<" + tag + " name='c'/>"),
+                AllOf(HasSubstr("robot.urdf:2:"),
+                      HasSubstr("<" + tag + "> has no meaning that is agreed on")));
+}
+
+TEST_F(UrdfWords, LoopsThatStartOpenAreSaid) {
+  const auto loop = [](const std::string& place) {
+    return arm("xyz='0 0 1'") + "<loop_joint name='l' type='spherical'><link1 link='base' xyz='" +
+           place + "'/><link2 link='arm' xyz='0 0 -1'/></loop_joint>";
+  };
+  EXPECT_THAT(notes(loop("0 0 0")), Not(HasSubstr("is open")));
+  EXPECT_THAT(notes(loop("0.6 0 0.2")),
+              HasSubstr("the loop of 'l' is open by 0.632 m where its joints start"));
 }
 
 }  // namespace

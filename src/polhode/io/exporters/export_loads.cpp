@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads of a model as properties of the joints of a tree.
+#include <algorithm>
 #include <numbers>
 #include <optional>
 
@@ -10,6 +11,11 @@
 namespace polhode::io {
 
 namespace {
+
+/// Difference of a force from a part of the weight that is rounding, relative to the weight.
+constexpr double kOfWeight = 1e-14;
+/// Distance of a point from a centre of mass that is rounding of coordinates [m].
+constexpr double kSamePlace = 1e-14;
 
 double parameter(const LoadSpec& load, const std::string& key) {
   const auto found = load.parameters.find(key);
@@ -44,7 +50,9 @@ class LoadSorter {
       else if (can_.lines && (type == "spring_damper" || type == "axial_force"))
         put_line(load);
       else if (type == "vector_damper")
-        put_ball_damper(load);
+        put_vector_damper(load);
+      else if (can_.pushes && (type == "force" || type == "moment"))
+        put_push(load);
       else
         refuse(load, format("{} has no load of the type {}", can_.name, type),
                "Apply it where the file is read.");
@@ -115,19 +123,53 @@ class LoadSorter {
       tree_.coordinate(*place).armature += parameter(load, "inertance");
   }
 
-  /// A damper that resists the relative rotation in a spherical joint.
-  void put_ball_damper(const LoadSpec& load) {
+  /// A damper that resists the relative rotation in a spherical joint, or the motion of a free
+  /// body.
+  void put_vector_damper(const LoadSpec& load) {
+    const double sliding = parameter(load, "damping"), turning = parameter(load, "turning_damping");
     for (ExportBody& body : tree_.bodies) {
       ExportJoint& joint = body.joint;
-      if (joint.type != "spherical") continue;
       const bool between = (joint.parent == load.a && body.spec == load.b) ||
                            (joint.parent == load.b && body.spec == load.a);
-      if (!between || parameter(load, "damping") != 0.0 || !can_.turning_damping) continue;
-      joint.damping += parameter(load, "turning_damping");
-      return;
+      if (!between) continue;
+      if (joint.type == "spherical" && sliding == 0.0 && can_.turning_damping) {
+        joint.damping += turning;
+        return;
+      }
+      // One number is that of all six velocities of a free body, those of its origin.
+      const Vec3& Z = body.spec == load.b ? load.Z_b : load.Z_a;
+      const bool at_origin = in_own_coordinates(model_, body.spec, Z).isZero(0.0);
+      if (joint.type == "free" && sliding == turning && at_origin && can_.free_damping) {
+        joint.damping += sliding;
+        return;
+      }
     }
-    refuse(load, can_.name + " has no dampers between two bodies but those of joints",
+    refuse(load,
+           can_.name + " has no dampers between two bodies but those of joints" +
+               (can_.free_damping ? ", with one number for a free body, at its origin" : ""),
            "Apply it where the file is read.");
+  }
+
+  /// A constant force or moment, or a force that holds a part of a body's weight.
+  void put_push(const LoadSpec& load) {
+    const bool on_body = load.solid < 0 && load.a == kGround && load.b != kGround;
+    const auto is_constant = [](const TimeFunctionPtr& f) { return !f || f->is_constant(); };
+    if (!on_body || !load.vector || load.of_motion.index() != 0 ||
+        !std::all_of(load.vector->begin(), load.vector->end(), is_constant))
+      return refuse(load, "it is a function, or acts on no single body, and the file has numbers",
+                    "Give a constant, and control it where the file is read.");
+    const int body = tree_.at[static_cast<std::size_t>(load.b)];
+    if (body < 0) return;
+    ExportPush push{load_, Vec3::Zero()};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const TimeFunctionPtr& f = (*load.vector)[k]) push.value[static_cast<int>(k)] = (*f)(0.0);
+    const Vec3 weight = model_.bodies[static_cast<std::size_t>(load.b)].mass * model_.gravity;
+    const double part = weight.isZero(0.0) ? 0.0 : -push.value.dot(weight) / weight.squaredNorm();
+    if (load.type == "force" && !load.body_fixed && load.Z_b.isZero(kSamePlace) && part > 0.0 &&
+        (push.value + part * weight).norm() <= kOfWeight * weight.norm())
+      tree_.bodies[static_cast<std::size_t>(body)].carried += part;
+    else
+      tree_.pushes.push_back(push);
   }
 
   void put_motor(const LoadSpec& load) {
@@ -174,7 +216,7 @@ class LoadSorter {
   }
 
   void add(const LoadSpec& load, ExportCoupling row) {
-    if (row.others.size() != 1)
+    if (row.others.size() != 1 && !can_.rows)
       return refuse(load,
                     format("{} couples two coordinates, and this is a row of {}", can_.name,
                            row.others.size() + 1),

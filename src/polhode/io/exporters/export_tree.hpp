@@ -19,6 +19,9 @@ struct ExportAbilities {
   bool motors = false;
   bool turning_damping = false;  ///< Of spherical joints.
   bool lines = false;            ///< Springs, dampers and pulls between two points.
+  bool pushes = false;           ///< Constant forces and moments on bodies.
+  bool rows = false;             ///< Rows of more than two coordinates.
+  bool free_damping = false;     ///< Dampers of bodies that move freely.
   std::string elsewhere;         ///< Hint for what it cannot represent.
 };
 
@@ -52,7 +55,7 @@ struct ExportJoint {
   Mat3 at_start = Mat3::Identity();  ///< Likewise at the start.
   Vec3 slid = Vec3::Zero();          ///< Child's point from the parent's, parent's axes [m].
   std::vector<ExportCoordinate> coordinates;  ///< The one nearest to the parent first.
-  double damping = 0.0;                       ///< Of a spherical joint [N m s].
+  double damping = 0.0;  ///< Of a spherical joint [N m s], of a free one also [N s/m].
 
   /// Origin of the child in the parent's coordinates at the start [m].
   [[nodiscard]] Vec3 child_at_start() const { return on_parent + slid - at_start * on_child; }
@@ -64,6 +67,7 @@ struct ExportBody {
   ExportJoint joint;
   Vec3 velocity = Vec3::Zero();  ///< Of its origin at the start, world [m/s].
   Vec3 turning = Vec3::Zero();   ///< Angular velocity relative to the parent, own axes [rad/s].
+  double carried = 0.0;          ///< Part of its weight that a force holds.
 };
 
 /// A coordinate of the tree.
@@ -85,6 +89,12 @@ struct ExportLine {
   double pull = 0.0;  ///< Force that attracts the points [N].
 };
 
+/// A constant force at a point of a body, or a moment.
+struct ExportPush {
+  int load = 0;  ///< In Model::loads.
+  Vec3 value = Vec3::Zero();
+};
+
 /// A coordinate as a sum of others.
 struct ExportCoupling {
   int load = 0;  ///< In Model::loads.
@@ -101,6 +111,7 @@ struct ExportTree {
   std::vector<ExportMotor> motors;
   std::vector<ExportCoupling> couplings;
   std::vector<ExportLine> lines;
+  std::vector<ExportPush> pushes;
 
   [[nodiscard]] ExportCoordinate& coordinate(const ExportPlace& p) {
     return bodies[static_cast<std::size_t>(p.body)]

@@ -21,6 +21,8 @@ using Kind = ExportNote::Kind;
 constexpr double kFarStop = 1e9;
 /// Difference of axes that is rounding [-].
 constexpr double kWelded = 1e-6;
+/// Site of the world in whose axes forces are given.
+constexpr const char* kWorldAxes = "world_axes";
 
 std::string quat_text(const Mat3& R) {
   const Quat q = Quat(R).normalized();
@@ -57,8 +59,8 @@ class MjcfWriter {
     find_sites();
     find_ends();
     write_bodies();
+    write_tendons();
     write_equalities();
-    write_lines();
     write_motors();
     write_start();
   }
@@ -74,12 +76,17 @@ class MjcfWriter {
     return model_.bodies[static_cast<std::size_t>(body)];
   }
 
+  /// Whether a shape is that of a file. There only the hulls of meshes touch.
+  static bool is_mesh(const ShapeSpec& shape) {
+    return shape.type == "mesh" || (shape.type == "hull" && !shape.file.empty());
+  }
+
   void write_meshes() {
     std::set<std::string> names;
     for (const ExportBody& body : tree_.bodies)
       for (const ShapeSpec& shape : spec(body.spec).shapes) {
         const std::pair key(shape.file, shape.scale);
-        if (shape.type != "mesh" || meshes_.contains(key)) continue;
+        if (!is_mesh(shape) || meshes_.contains(key)) continue;
         const std::string stem = std::filesystem::path(shape.file).stem().string();
         std::string name = stem;
         for (int k = 2; !names.insert(name).second; ++k) name = format("{}_{}", stem, k);
@@ -117,6 +124,14 @@ class MjcfWriter {
       sites_[load.b].push_back(
           {load.name + "_2", in_own_coordinates(model_, load.b, load.Z_b), Mat3::Identity()});
     }
+    bool by_world = false;
+    for (const ExportPush& push : tree_.pushes) {
+      const LoadSpec& load = model_.loads[static_cast<std::size_t>(push.load)];
+      sites_[load.b].push_back(
+          {load.name + "_at", in_own_coordinates(model_, load.b, load.Z_b), Mat3::Identity()});
+      by_world = by_world || !load.body_fixed;
+    }
+    if (by_world) sites_[kGround].push_back({kWorldAxes, Vec3::Zero(), Mat3::Identity()});
   }
 
   void write_sites(int body) {
@@ -146,6 +161,7 @@ class MjcfWriter {
     out_.PushAttribute("pos", vector_text(joint.child_at_start()).c_str());
     if (!joint.at_start.isIdentity(0.0))
       out_.PushAttribute("quat", quat_text(joint.at_start).c_str());
+    if (body.carried != 0.0) out_.PushAttribute("gravcomp", number_text(body.carried).c_str());
     if (b.mass > 0.0) {
       XmlTag inertial(out_, "inertial");
       inertial.put("pos", b.com).put("mass", b.mass);
@@ -156,7 +172,13 @@ class MjcfWriter {
         inertial.put("fullinertia",
                      numbers_text({J(0, 0), J(1, 1), J(2, 2), J(0, 1), J(0, 2), J(1, 2)}));
     }
-    if (joint.type == "free") XmlTag(out_, "freejoint").put("name", joint.name);
+    if (joint.type == "free" && joint.damping == 0.0)
+      XmlTag(out_, "freejoint").put("name", joint.name);
+    else if (joint.type == "free")
+      XmlTag(out_, "joint")
+          .put("name", joint.name)
+          .put("type", "free")
+          .put("damping", joint.damping);
     if (joint.type == "spherical") {
       XmlTag ball(out_, "joint");
       ball.put("name", joint.name).put("type", "ball").put("pos", joint.on_child);
@@ -195,11 +217,13 @@ class MjcfWriter {
       size = numbers_text({0.5 * s[0], 0.5 * (s[1] - s[0])});  // Without its ends.
     else if (type == "plane")
       size = "0 0 1";  // Without bounds.
-    else if (type != "mesh")
+    else if (!is_mesh(shape))
       return notes_.refuse(shape.place, format("bodies.{}.shape", body.name),
-                           format("an MJCF has no shape of the type {}", type),
+                           format("an MJCF has no shape of the type {}{}", type,
+                                  type == "hull" ? " without a file" : ""),
                            "Use a box, sphere, ellipsoid, cylinder, capsule or mesh.");
     if (type == "capsule" && s[1] == s[0]) type = "sphere";
+    if (is_mesh(shape)) type = "mesh";
     XmlTag geom(out_, "geom");
     geom.put("type", type);
     if (!size.empty()) geom.put("size", size);
@@ -229,15 +253,21 @@ class MjcfWriter {
     for (const ExportCoupling& row : tree_.couplings) {
       const LoadSpec& load = model_.loads[static_cast<std::size_t>(row.load)];
       const ExportCoordinate& first = tree_.coordinate(row.first);
-      const ExportCoordinate& second = tree_.coordinate(row.others[0].first);
-      const double factor = row.others[0].second;
       // Displacements from the references, which are the starts.
-      const double constant = row.offset + factor * second.start - first.start;
-      XmlTag(out_, "joint")
-          .put("name", load.name)
-          .put("joint1", first.name)
-          .put("joint2", second.name)
-          .put("polycoef", numbers_text({constant, factor, 0.0, 0.0, 0.0}));
+      double constant = row.offset - first.start;
+      for (const auto& [place, factor] : row.others)
+        constant += factor * tree_.coordinate(place).start;
+      if (row.others.size() == 1)
+        XmlTag(out_, "joint")
+            .put("name", load.name)
+            .put("joint1", first.name)
+            .put("joint2", tree_.coordinate(row.others[0].first).name)
+            .put("polycoef", numbers_text({constant, row.others[0].second, 0.0, 0.0, 0.0}));
+      else
+        XmlTag(out_, "tendon")
+            .put("name", load.name)
+            .put("tendon1", load.name + "_sum")
+            .put("polycoef", numbers_text({constant, 0.0, 0.0, 0.0, 0.0}));
       notes_.add(Kind::differs, "loads." + load.name,
                  "holds exactly, and is soft in programs that read the file");
     }
@@ -253,9 +283,20 @@ class MjcfWriter {
     return (place(load.b, load.Z_b) - place(load.a, load.Z_a)).norm();
   }
 
-  void write_lines() {
-    if (tree_.lines.empty()) return;
+  /// Straight lines, and sums of coordinates that <equality> holds.
+  void write_tendons() {
+    const auto is_sum = [](const ExportCoupling& row) { return row.others.size() != 1; };
+    if (tree_.lines.empty() && std::none_of(tree_.couplings.begin(), tree_.couplings.end(), is_sum))
+      return;
     const XmlTag tendon(out_, "tendon");
+    for (const ExportCoupling& row : tree_.couplings) {
+      if (!is_sum(row)) continue;
+      XmlTag fixed(out_, "fixed");
+      fixed.put("name", model_.loads[static_cast<std::size_t>(row.load)].name + "_sum");
+      XmlTag(out_, "joint").put("joint", tree_.coordinate(row.first).name).put("coef", 1.0);
+      for (const auto& [place, factor] : row.others)
+        XmlTag(out_, "joint").put("joint", tree_.coordinate(place).name).put("coef", -factor);
+    }
     for (const ExportLine& line : tree_.lines) {
       const LoadSpec& load = model_.loads[static_cast<std::size_t>(line.load)];
       const auto value = [&](const char* key, double standard) {
@@ -281,7 +322,9 @@ class MjcfWriter {
 
   void write_motors() {
     const auto pulls = [](const ExportLine& line) { return line.pull != 0.0; };
-    if (tree_.motors.empty() && std::none_of(tree_.lines.begin(), tree_.lines.end(), pulls)) return;
+    if (tree_.motors.empty() && tree_.pushes.empty() &&
+        std::none_of(tree_.lines.begin(), tree_.lines.end(), pulls))
+      return;
     const XmlTag actuator(out_, "actuator");
     for (const ExportMotor& motor : tree_.motors) {
       const LoadSpec& load = model_.loads[static_cast<std::size_t>(motor.load)];
@@ -307,6 +350,18 @@ class MjcfWriter {
         notes_.add(Kind::elsewhere, "loads." + name,
                    format("its control is {:.12g}, as in the keyframe", line.pull));
       }
+    for (const ExportPush& push : tree_.pushes) write_push(push);
+  }
+
+  void write_push(const ExportPush& push) {
+    const LoadSpec& load = model_.loads[static_cast<std::size_t>(push.load)];
+    XmlTag motor(out_, "motor");
+    motor.put("name", load.name).put("site", load.name + "_at");
+    if (!load.body_fixed) motor.put("refsite", kWorldAxes);
+    const Vec3 &v = push.value, none = Vec3::Zero();
+    const bool turns = load.type == "moment";
+    motor.put("gear", vector_text(turns ? none : v) + " " + vector_text(turns ? v : none));
+    notes_.add(Kind::elsewhere, "loads." + load.name, "its control is 1, as in the keyframe");
   }
 
   /// A keyframe with all coordinates, velocities and controls.
@@ -332,6 +387,7 @@ class MjcfWriter {
     for (const ExportMotor& motor : tree_.motors) add(control, number_text(motor.target));
     for (const ExportLine& line : tree_.lines)
       if (line.pull != 0.0) add(control, number_text(line.pull));
+    for (std::size_t k = 0; k < tree_.pushes.size(); ++k) add(control, "1");
     if (position.empty()) return;
     const XmlTag keyframe(out_, "keyframe");
     XmlTag key(out_, "key");
@@ -361,6 +417,9 @@ Exported export_mjcf(const Simulation& simulation, const ExportOptions& options)
                             .motors = true,
                             .turning_damping = true,
                             .lines = true,
+                            .pushes = true,
+                            .rows = true,
+                            .free_damping = true,
                             .elsewhere = "Use joints and loads that it has."};
   const ExportTree tree = export_tree(simulation, can, notes);
   std::string text = MjcfWriter(simulation, options, tree, notes).write();

@@ -9,6 +9,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/importers/mjcf_actuators.hpp>
+#include <polhode/io/importers/mjcf_armature.hpp>
 #include <polhode/io/importers/mjcf_bodies.hpp>
 #include <polhode/io/importers/mjcf_contacts.hpp>
 #include <polhode/io/importers/mjcf_keyframe.hpp>
@@ -52,12 +53,13 @@ class MjcfReader {
     for (const Element* e : file_.sections("equality")) read_equality(*e, bodies, tendons.sums());
     read_actuators(file_, refusals_, bodies, options_, controls, tendons, robot_);
     tendons.finish();
+    add_free_armatures(file_, robot_);
     read_sensors(file_, bodies, robot_);
     read_contacts(file_, bodies, options_, robot_);
     for (const Element* section : file_.sections("asset"))
       for (const Element* e = section->FirstChildElement(); e != nullptr;
            e = e->NextSiblingElement()) {
-        static_cast<void>(xml_.children(*section, e->Name()));
+        xml_.mark_read(*e);
         file_.skip(*e);
         const std::string_view tag = e->Name();
         if (tag == "texture" || tag == "material" || tag == "skin" || tag == "hfield")
@@ -89,7 +91,7 @@ class MjcfReader {
     for (const Element* e = section.FirstChildElement(); e != nullptr;
          e = e->NextSiblingElement()) {
       const std::string kind = e->Name();
-      static_cast<void>(xml_.children(section, e->Name()));
+      xml_.mark_read(*e);
       const MjcfTag tag{file_, *e, {"equality"}, ""};
       const std::string name = tag.text("name", format("{}_{}", kind, 1 + robot_.loops.size()));
       file_.ignored.attributes(*e, {"solref", "solimp", "torquescale"});
@@ -101,7 +103,7 @@ class MjcfReader {
         file_.ignored.add(*e, "a constraint of <equality> that <option> switches off",
                           "holds nothing");
       } else if (kind == "joint") {
-        read_joints(tag);
+        read_joints(tag, name);
       } else if (kind == "tendon") {
         read_tendon_row(tag, name, sums);
       } else if (kind == "connect" || kind == "weld") {
@@ -113,7 +115,14 @@ class MjcfReader {
     }
   }
 
-  void read_joints(const MjcfTag& tag) {
+  void say_exact(const Element& e, const std::string& name) {
+    file_.notes.push_back(
+        {ImportNote::Kind::approximated, xml_.place(e),
+         format("the constraint {} holds exactly, and is soft in MuJoCo", quote(name))});
+  }
+
+  /// A joint that follows another one, or that is held at a coordinate.
+  void read_joints(const MjcfTag& tag, const std::string& row_name) {
     const std::string name = xml_.required_text(tag.e, "joint1");
     const auto second = xml_.text(tag.e, "joint2");
     const RobotJoint* first = name.empty() ? nullptr : single_joint(tag.e, name);
@@ -122,16 +131,24 @@ class MjcfReader {
     const std::vector<double> given = tag.numbers("polycoef", 1, 5);
     std::copy(given.begin(), given.end(), c.begin());
     if (first == nullptr || (second && leader == nullptr)) return;
-    if (c[2] != 0.0 || c[3] != 0.0 || c[4] != 0.0) {
+    if (second && (c[2] != 0.0 || c[3] != 0.0 || c[4] != 0.0)) {
       refusals_.add(tag.e, format("{} follows by a polynomial of a higher order", quote(name)),
                     "Only linear ones are read.");
       return;
     }
-    if (first->mimic || !second) {
-      refusals_.add(tag.e,
-                    first->mimic ? format("{} follows two joints", quote(name))
-                                 : format("{} is held at a value", quote(name)),
-                    "Add a coupling, or a motor with a constant angle.");
+    if (first->mimic) {
+      refusals_.add(tag.e, format("{} follows two joints", quote(name)), "Add a coupling.");
+      return;
+    }
+    if (!second) {
+      RobotRow row;
+      row.name = row_name;
+      row.at = &tag.e;
+      row.joints = {name};
+      row.factors = {1.0};
+      row.sum = c[0] + first->zero;
+      say_exact(tag.e, row_name);
+      robot_.rows.push_back(std::move(row));
       return;
     }
     RobotMimic mimic;
@@ -166,9 +183,7 @@ class MjcfReader {
       row.sum += factor * joint->zero;
     }
     if (row.joints.empty()) return;
-    file_.notes.push_back(
-        {ImportNote::Kind::approximated, xml_.place(tag.e),
-         format("the constraint {} holds exactly, and is soft in MuJoCo", quote(name))});
+    say_exact(tag.e, name);
     robot_.rows.push_back(std::move(row));
   }
 
@@ -219,9 +234,7 @@ class MjcfReader {
             of_second ? a.inverse() * b * anchor : b.inverse() * a * anchor;
       }
     }
-    file_.notes.push_back(
-        {ImportNote::Kind::approximated, xml_.place(tag.e),
-         format("the constraint {} holds exactly, and is soft in MuJoCo", quote(name))});
+    say_exact(tag.e, name);
     mark_loop(loop);
     robot_.loops.push_back(std::move(loop));
   }

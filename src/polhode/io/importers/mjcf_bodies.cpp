@@ -84,7 +84,7 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
        inner = inner->NextSiblingElement()) {
     const std::string_view name = inner->Name();
     if (name == "geom") {
-      static_cast<void>(xml.children(e, "geom"));
+      xml.mark_read(*inner);
       const MjcfTag tag{file_, *inner, {"geom"}, place.child_class, place.suffix};
       const MjcfGeom geom = geoms_.read(tag, place.frame, massive);
       if (geom.ellipsoid) ellipsoids_.push_back(inner);
@@ -118,7 +118,7 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
         xml.fault(*inner, format("the site {} stands twice", quote(*site)), "Rename one of them.");
       file_.skip(*inner);
     } else if (name == "frame") {
-      static_cast<void>(xml.children(e, "frame"));
+      xml.mark_read(*inner);
       const MjcfTag tag{file_, *inner, {}, ""};
       file_.ignored.attributes(*inner, {"name"});
       read_content(*inner,
@@ -126,15 +126,18 @@ void MjcfBodies::read_content(const Element& e, const Place& place, Parts& parts
                     xml.text(*inner, "childclass").value_or(place.child_class), place.suffix},
                    parts, massive);
     } else if (name == "replicate") {
-      static_cast<void>(xml.children(e, "replicate"));
+      xml.mark_read(*inner);
       read_copies(*inner, place, parts, massive);
     } else if (name == "body") {
-      static_cast<void>(xml.children(e, "body"));
+      xml.mark_read(*inner);
       read_body(*inner, place);
     } else if (name == "composite" || name == "flexcomp" || name == "attach" || name == "plugin") {
       xml.skip(*inner);
       refusals_.add(*inner, format("<{}> is not read", name),
-                    "Let MuJoCo save the model, which expands some of these.");
+                    name == "attach"     ? "Let MuJoCo save the model, which writes its bodies out."
+                    : name == "flexcomp" ? "Add a solid or a cable in a model file."
+                    : name == "plugin"   ? "Leave it out."
+                                         : "Write its bodies, or use <replicate>.");
     }
   }
   file_.ignored.skip(e, {"camera", "light"});
@@ -336,12 +339,10 @@ void MjcfBodies::read_joint(const MjcfTag& tag, RobotJoint& joint) {
   joint.friction = effort("frictionloss");
   joint.armature = effort("armature");
   if (joint.type == "floating") {
-    if (joint.stiffness != 0.0 || joint.armature != 0.0 ||
-        (joint.friction != 0.0 && options_.friction))
-      refusals_.add(
-          tag.e,
-          format("the free joint {} has a stiffness, friction or armature", quote(joint.name)),
-          "Leave it out, or use a <freejoint>, which has none.");
+    if (joint.stiffness != 0.0 || (joint.friction != 0.0 && options_.friction))
+      refusals_.add(tag.e,
+                    format("the free joint {} has a stiffness or friction", quote(joint.name)),
+                    "Leave it out, or use a <freejoint>, which has none.");
     return;
   }
   const Pose at{tag.vector("pos", Vec3::Zero()), Mat3::Identity()};

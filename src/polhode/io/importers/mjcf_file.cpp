@@ -99,10 +99,7 @@ void MjcfFile::read_defaults(const Element& e, const std::string& parent) {
   // Attributes of defaults are read where they are used.
   for (const Element* kind = e.FirstChildElement(); kind != nullptr;
        kind = kind->NextSiblingElement())
-    if (std::string_view(kind->Name()) != "default") {
-      static_cast<void>(xml.children(e, kind->Name()));
-      skip(*kind);
-    }
+    if (std::string_view(kind->Name()) != "default") skip(*kind);
 }
 
 std::vector<const Element*> MjcfFile::blocks_of(const Element& e, const std::string& child_class) {

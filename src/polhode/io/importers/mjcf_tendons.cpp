@@ -32,7 +32,7 @@ void MjcfTendons::read() {
   for (const Element* section : file_.sections("tendon"))
     for (const Element* e = section->FirstChildElement(); e != nullptr;
          e = e->NextSiblingElement()) {
-      static_cast<void>(file_.xml.children(*section, e->Name()));
+      file_.xml.mark_read(*e);
       const MjcfTag tag{file_, *e, {"tendon"}, ""};
       const std::string name = tag.text("name", "");
       const std::string_view kind = e->Name();

@@ -37,4 +37,8 @@ struct RobotTree {
                            Diagnostics& diagnostics, std::vector<ImportNote>& notes,
                            RobotTree& tree);
 
+/// Notes of loops that are open where the joints start, by how much.
+void note_open_loops(const Robot& robot, const RobotTree& tree, XmlFile& xml,
+                     std::vector<ImportNote>& notes);
+
 }  // namespace polhode::io

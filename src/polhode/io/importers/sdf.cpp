@@ -134,7 +134,6 @@ class SdfReader {
     for (const Element* other = e.FirstChildElement(); other != nullptr;
          other = other->NextSiblingElement())
       if (std::string_view(other->Name()).ends_with(":joint")) {
-        static_cast<void>(xml_.children(e, other->Name()));
         xml_.skip(*other);
         file_.refuse(*other, format("<{}> is not read", other->Name()),
                      "Leave it out, and add a joint to the model.");

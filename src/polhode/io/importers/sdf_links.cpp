@@ -211,7 +211,6 @@ class SdfLinkReader {
     } else {
       for (const Element* other = e.FirstChildElement(); other != nullptr;
            other = other->NextSiblingElement()) {
-        static_cast<void>(xml_.children(e, other->Name()));
         xml_.skip(*other);
         file_.ignored.add(*other, format("<{}> in <geometry>", other->Name()), "is not read");
       }

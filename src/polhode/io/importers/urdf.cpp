@@ -44,11 +44,12 @@ class RobotReader {
     for (const Element* e : xml_.children(root, "drake:joint")) read_joint(*e, kDrakeTypes, robot);
     for (const char* tag : {"loop_joint", "loop"})
       for (const Element* e : xml_.children(root, tag)) read_loop(*e, robot);
-    if (const Element* e = root.FirstChildElement("constraint"))
-      xml_.fault(*e, "<constraint> has no meaning that is agreed on",
-                 "Write the constraint as a joint or load of an overlay.");
-    ignored_.skip(root,
-                  {"material", "transmission", "gazebo", "sensor", "ros2_control", "constraint"});
+    for (const char* tag : {"constraint", "coupling"})
+      if (const Element* e = root.FirstChildElement(tag))
+        xml_.fault(*e, format("<{}> has no meaning that is agreed on", tag),
+                   "Write it as <mimic>, or as a joint or load of an overlay.");
+    ignored_.skip(root, {"material", "transmission", "gazebo", "sensor", "ros2_control",
+                         "constraint", "coupling"});
     if (robot.links.empty()) xml_.fault(root, "the robot has no link", "Add <link name=\"...\">.");
     ignored_.add_unread();
     return robot;
@@ -175,7 +176,9 @@ class RobotReader {
     if (const Element* box = xml_.child(e, "box")) {
       shape.kind = "box";
       const auto size = xml_.vector(*box, "size");
-      if (size && size->minCoeff() > 0.0)
+      if (size && size->isZero(0.0))  // A sign of a link that has only a place.
+        ignored_.add(*box, "a <box> of the size 0 0 0", "has no surface");
+      else if (size && size->minCoeff() > 0.0)
         shape.sizes = {size->x(), size->y(), size->z()};
       else if (size || box->Attribute("size") == nullptr)
         xml_.fault(*box, "the size of <box> must be three numbers above 0",

@@ -48,6 +48,7 @@ class ModelWriter {
   void write() {
     const NodeBuilder make{xml_.line(xml_.root())};
     note_idle_shapes(robot_, tree_, xml_, out_.notes);
+    note_open_loops(robot_, tree_, xml_, out_.notes);
     name_all();
     contacts_.emplace(robot_, tree_, link_name_, xml_, out_.notes);
     SourceNode bodies = make.map(), joints = make.map(), loads = make.map();
