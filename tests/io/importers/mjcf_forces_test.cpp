@@ -104,6 +104,8 @@ TEST_F(Mjcf, MotorsOfSitesAreForcesAndMoments) {
   EXPECT_THAT(notes(cart("<motor name='m' site='post'/>")),
               HasSubstr("the actuator 'm' acts on no body that moves"));
   EXPECT_THAT(fault(cart("<adhesion name='m' body='a'/>")),
+              HasSubstr("the actuator 'm' pulls a body to what it touches"));
+  EXPECT_THAT(fault(cart("<motor name='m'/>")),
               HasSubstr("the actuator 'm' does not act on a joint, tendon or site"));
 }
 

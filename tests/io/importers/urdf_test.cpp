@@ -175,6 +175,29 @@ TEST_F(Urdf, StartsByNameAndLimitsAreAbsolute) {
   EXPECT_THAT(robot_fault(inside, {"import.start.tun=1"}), HasSubstr("Did you mean 'turn'?"));
 }
 
+TEST_F(Urdf, StartsHaveUnits) {
+  const std::string inside = link("base", "") + link("arm") + link("slide") + link("plate") +
+                             joint("turn", "continuous", "base", "arm", "<axis xyz='0 0 1'/>") +
+                             joint("move", "prismatic", "arm", "slide") +
+                             joint("float", "planar", "base", "plate", "<axis xyz='0 0 1'/>");
+  const auto place = [&](const io::Overrides& start) {
+    const Model model = read(inside, start);
+    return std::pair(model.bodies.at(2).position, model.bodies.at(3).orientation);
+  };
+  const auto known = place({"import.start.turn=0.5235987755982988", "import.start.move=0.2",
+                            "import.start.float=[0.1, 0.3, 0.6981317007977318]"});
+  const auto given = place({"import.start.turn=30 deg", "import.start.move=20 cm",
+                            "import.start.float=[100 mm, 0.3, 40 deg]"});
+  EXPECT_NEAR((given.first - known.first).norm(), 0.0, kRounding);
+  EXPECT_NEAR(given.second.angularDistance(known.second), 0.0, 1e-7);
+  EXPECT_NEAR(known.first.x(), 0.2 * std::cos(0.5235987755982988), kRounding);
+  EXPECT_THAT(robot_fault(inside, {"import.start.turn=1 mm"}),
+              HasSubstr("its coordinate 1 is an angle, and a length is given"));
+  EXPECT_THAT(robot_fault(inside, {"import.start.float=[0, 2 deg, 0]"}),
+              HasSubstr("its coordinate 2 is a length, and an angle is given"));
+  EXPECT_THAT(robot_fault(inside, {"import.start.turn=2 kg"}), HasSubstr("a mass"));
+}
+
 TEST_F(Urdf, LoopJointClosesALoop) {
   const std::string inside =
       link("base", "") + link("a") + link("b") +

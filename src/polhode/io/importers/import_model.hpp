@@ -26,7 +26,9 @@ struct ImportOptions {
   bool allow_partial = false;                        ///< Whether parts may be left out.
   std::vector<std::string> package_paths;            ///< Folders that contain packages.
   std::map<std::string, std::vector<double>> start;  ///< Coordinates at the start by joint, SI.
-  std::map<std::string, std::string> arguments;      ///< Of xacro.
+  /// Units that they were given with, a letter each: r an angle, m a length, - none.
+  std::map<std::string, std::string> start_units;
+  std::map<std::string, std::string> arguments;  ///< Of xacro.
 };
 
 /// Something that an import changed or left out.

@@ -33,6 +33,7 @@ class ActuatorReader {
     law_ = {};
     if (a.kind == "muscle")
       return refuse("is a muscle with curves of its own", "Add a cable with a 'muscle'.");
+    if (a.kind == "adhesion") return refuse("pulls a body to what it touches");
     if (a.joint.empty() && a.tendon.empty() && a.site.empty())
       return refuse("does not act on a joint, tendon or site");
     if (a.delay > 0.0) return refuse("has a delay", "Leave it out.");

@@ -169,7 +169,7 @@ class Arranger {
         fault_start(joint.name,
                     format("has {} coordinates, but {} are given", count, given->second.size()),
                     "Planar joints have [x, y, angle], floating ones [x, y, z, roll, pitch, yaw].");
-      else
+      else if (check_units(joint))
         tree_.start[j] = given->second;
       if (count == 1 && options_.limits && !joint.mimic && given->second.size() == 1) {
         const double q = given->second[0];
@@ -187,6 +187,26 @@ class Arranger {
         fault_start(name, "is no joint of the file",
                     did_you_mean(name, names) + "Joints: " + name_list(names, 12) + ".");
     follow();
+  }
+
+  /// Whether the coordinates of a joint have no unit, or one of their kind; otherwise an error.
+  bool check_units(const RobotJoint& joint) {
+    const auto given = options_.start_units.find(joint.name);
+    if (given == options_.start_units.end()) return true;
+    const std::string kinds = joint.type == "planar"     ? "mmr"
+                              : joint.type == "floating" ? "mmmrrr"
+                              : joint.turns()            ? "r"
+                                                         : "m";
+    for (std::size_t k = 0; k < std::min(kinds.size(), given->second.size()); ++k) {
+      if (given->second[k] == '-' || given->second[k] == kinds[k]) continue;
+      const auto word = [](char kind) { return kind == 'r' ? "an angle" : "a length"; };
+      fault_start(joint.name,
+                  format("its coordinate {} is {}, and {} is given", k + 1, word(kinds[k]),
+                         word(given->second[k])),
+                  "Angles have the unit rad or deg, lengths m or mm.");
+      return false;
+    }
+    return true;
   }
 
   void fault_start(const std::string& name, std::string what, std::string hint) {

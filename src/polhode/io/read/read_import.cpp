@@ -37,17 +37,43 @@ std::string as_value(const std::string& text) {
   return out + "\"";
 }
 
+/// Coordinates of a joint: a number, or a list of them, with the unit of an angle or length, or
+/// without one in SI.
+void read_start(ReadContext& context, const SourceNode& node, const std::string& joint,
+                ImportOptions& options) {
+  const std::string path = "import.start." + joint;
+  std::vector<double> values;
+  std::string units;
+  const auto add = [&](const SourceNode& one) {
+    const auto expression = read_expression(context, one, path, false);
+    if (!expression) return;
+    Field field{.name = "start", .kind = FieldKind::kNumber, .dimension = dimensions::kNone};
+    units += '-';
+    if (expression->certainty() == Certainty::kKnown)
+      for (const auto& [letter, dimension] :
+           {std::pair{'r', dimensions::kAngle}, std::pair{'m', dimensions::kLength}})
+        if (expression->dimension().name() == dimension.name()) {
+          field.dimension = dimension;
+          units.back() = letter;
+        }
+    if (const auto q = read_number(context, one, path, field)) values.push_back(*q);
+  };
+  if (node.is_list())
+    for (const SourceNode& one : node.children) add(one);
+  else
+    add(node);
+  if (values.empty()) return;
+  options.start[joint] = std::move(values);
+  options.start_units[joint] = std::move(units);
+}
+
 void read_map(ReadContext& context, const SourceNode& node, ImportOptions& options) {
   if (const SourceNode* start = node.find("start")) {
-    static const Field number{
-        .name = "start", .kind = FieldKind::kNumber, .dimension = dimensions::kNone};
     if (!start->is_map())
       context.fault(*start, "import.start", "expects a map from joints to numbers",
                     "Write '{elbow: 0.5}'.");
     for (std::size_t k = 0; k < start->keys.size(); ++k)
-      if (const auto q = read_number(context, start->children[k],
-                                     "import.start." + start->keys[k].name, number))
-        options.start[start->keys[k].name] = {*q};
+      read_start(context, start->children[k], start->keys[k].name, options);
   }
   if (const SourceNode* arguments = node.find("arguments")) {
     if (!arguments->is_map())

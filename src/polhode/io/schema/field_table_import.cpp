@@ -63,8 +63,8 @@ const FieldTable& import_fields() {
                       "model:// names, relative to the folder of this file."},
           {.name = "start",
            .kind = kVariables,
-           .meaning = "Coordinate at the start by joint [rad, m]; left out: 0, or the limit "
-                      "nearest to it."},
+           .meaning = "Coordinate at the start by joint, in rad and m or with a unit; a list for "
+                      "joints with several. Left out: 0, or the limit nearest to it."},
           {.name = "arguments",
            .kind = kVariables,
            .meaning = "Arguments of a xacro file by name."},

@@ -188,10 +188,15 @@ json field_schema(const FieldTable& table, const Field& field) {
                                       {"additionalProperties", reference("number")}}})}};
     case kStep:
       return {{"anyOf", json::array({{{"const", "auto"}}, reference("number")})}};
-    case kVariables:
+    case kVariables: {
+      json value = reference("number");
+      if (field.name == "start")  // Joints of an import may have several coordinates.
+        value = {
+            {"anyOf", json::array({value, {{"type", "array"}, {"items", reference("number")}}})}};
       return {{"type", json::array({"object", "null"})},
               {"propertyNames", {{"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
-              {"additionalProperties", reference("number")}};
+              {"additionalProperties", value}};
+    }
     case kNamed:
       return {{"type", json::array({"object", "null"})},
               {"propertyNames", reference("new_name")},
