@@ -290,6 +290,57 @@ TEST_F(FebSolidsCli, LoadsOfOneStepEndWithIt) {
   EXPECT_NE(value(direct.out, "result_hash"), "missing");
 }
 
+/// Steps of statics of a second each, with the conditions of each on displacements, and curves.
+std::string in_steps(std::string text, const std::vector<std::string>& boundaries) {
+  const std::size_t from = text.find("<Control>"), to = text.find("</Control>") + 10;
+  text.erase(from, to - from);
+  std::string steps = "<Step>";
+  for (const std::string& boundary : boundaries)
+    steps +=
+        "<step><Control><analysis>STATIC</analysis><time_steps>5</time_steps><step_size>0.2"
+        "</step_size></Control><Boundary>" +
+        boundary + "</Boundary></step>";
+  text.insert(text.find("<LoadData>"), steps + "</Step>");
+  text.insert(text.find("</LoadData>"),
+              "<load_controller id='2' type='loadcurve'><points><pt>2,0</pt><pt>3,-1</pt></points>"
+              "</load_controller>");
+  return text;
+}
+
+// Stretched, held, and let back by half of it, relative to where it was held.
+TEST_F(FebSolidsCli, DisplacementsAreThoseOfTheStep) {
+  const auto pull = [](const char* value, const char* relative) {
+    return format(
+        "<bc name='pull' type='prescribed displacement' node_set='x1'><dof>x</dof>{}<relative>{}"
+        "</relative></bc>",
+        value, relative);
+  };
+  const std::string stretch = pull("<value lc='1'>0.3</value>", "0");
+  const std::string hold =
+      "<bc name='hold' type='zero displacement' node_set='x1'><x_dof>1</x_dof></bc>";
+  const auto force = [](double u) { return 1e6 * (std::pow(1 + u, 2) - 1) / 2 * (1 + u); };
+  const auto end = [&](const std::vector<std::string>& boundaries, const char* interface) {
+    return last(in_steps(file("hex8", kElastic, kSymmetry), boundaries),
+                std::string("{solid: cube, interface: ") + interface + "}")
+        .at(0);
+  };
+  EXPECT_NEAR(end({stretch, hold}, "pull"), force(0.3), 1e-3);
+  EXPECT_NEAR(end({stretch, stretch}, "pull"), force(0.3), 1e-3);
+  EXPECT_NEAR(end({hold, pull("<value lc='1'>0.3</value>", "0")}, "pull"), force(0.3), 1e-3);
+  EXPECT_NEAR(end({stretch, hold, pull("<value lc='2'>0.15</value>", "1")}, "pull"), force(0.15),
+              1e-3);
+  // Held outside the steps as well.
+  write("cube.feb", in_steps(file("hex8", kElastic, std::string(kSymmetry) + hold), {"", stretch}));
+  EXPECT_EQ(run({"check", "cube.feb"}).code, 0);
+  write("cube.feb", in_steps(file("hex8", kElastic, kSymmetry), {stretch, ""}));
+  EXPECT_THAT(run({"check", "cube.feb"}).err,
+              HasSubstr("is free in one step and held by 'pull' in another"));
+  write("cube.feb",
+        in_steps(file("hex8", kElastic, kSymmetry), {"<bc type='rigid' node_set='x1'/>", ""}));
+  EXPECT_THAT(run({"check", "cube.feb"}).err,
+              HasSubstr("<bc> of type \"rigid\" of one step of several is not read"));
+}
+
 // The ground carries the weight, 1000 kg times the acceleration.
 TEST_F(FebSolidsCli, BodyForcesAreMinusTheAcceleration) {
   for (const std::string lc : {"", " lc='1'"}) {
@@ -407,6 +458,10 @@ TEST_F(FebSolidsCli, WhatIsNotReadIsSaid) {
   EXPECT_THAT(fault(file("hex8", kElastic,
                          "<bc type='zero displacement' node_set='x3'><x_dof>1</x_dof></bc>")),
               HasSubstr("there is no set of nodes 'x3'"));
+  EXPECT_THAT(fault(file("hex8", kElastic,
+                         "<bc name='none' type='zero displacement' node_set='x0'>"
+                         "<x_dof>0</x_dof></bc>")),
+              HasSubstr("the <bc> 'none' fixes no component"));
   EXPECT_THAT(fault(file("hex8", kElastic, "<bc type='linear constraint' node_set='x0'/>")),
               HasSubstr("<bc> of type 'linear constraint' is not read"));
   EXPECT_THAT(
@@ -417,6 +472,11 @@ TEST_F(FebSolidsCli, WhatIsNotReadIsSaid) {
                                   "<c1>1</c1><k>100</k><fiber type='local'>1,2</fiber>"),
                          kSymmetry)),
               HasSubstr("only fibres of type \"vector\" or \"angles\" are read"));
+  std::string shell = file("hex8", kElastic, kSymmetry);
+  shell.replace(shell.find("<SolidDomain"), 12, "<ShellDomain");
+  EXPECT_THAT(fault(shell),
+              HasSubstr("the <ShellDomain> 'cube' of hex8 elements is not read, as there are no "
+                        "shells. Mesh its thickness"));
   // Fibres may be given without a tag of their own.
   write("cube.feb",
         file("hex8",

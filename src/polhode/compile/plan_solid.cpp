@@ -89,8 +89,14 @@ class SolidPlanner {
     }
     for (const solids::ElementBlock& block : mesh.blocks) {
       if (block.shape().dimension != 3) {
-        fault("mesh", format("{} is no solid element", block.type),
-              "Use hexahedra, tetrahedra or wedges");
+        fault(
+            "mesh",
+            block.shape().dimension == 2
+                ? format("{} is no solid element, and there are no shells (S3, S4 and their like)",
+                         block.type)
+                : format("{} is no solid element", block.type),
+            "Use hexahedra, tetrahedra or wedges; for a plate one layer of hex20 or wedge15, for a "
+            "slender part a beam");
         sound = false;
         continue;
       }

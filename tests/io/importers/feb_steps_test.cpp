@@ -153,14 +153,7 @@ TEST_F(FebSteps, SettingsOfStepsAreMerged) {
   EXPECT_THAT(fault(steps(lasting(1, ""), tag("step", ""))),
               HasSubstr("the step has no <Control>"));
   EXPECT_THAT(fault(steps(lasting(1, ""), lasting(1, tag("Rigid", fixed("bar", "110000"))))),
-              HasSubstr("<rigid_bc> of one step of several is not read"));
-  EXPECT_THAT(fault(steps(lasting(1, ""),
-                          lasting(1, tag("Rigid", typed("rigid_bc", "rigid_displacement",
-                                                        tag("rb", "bar") + tag("dof", "Rx") +
-                                                            tag("value", "1")))))),
-              HasSubstr("<rigid_bc> of one step of several is not read"));
-  EXPECT_THAT(fault(steps(lasting(1, ""), lasting(1, tag("Boundary", tag("bc", ""))))),
-              HasSubstr("<Boundary> of one step of several is not read"));
+              HasSubstr("x of 'bar' is free in one step and fixed or prescribed in a later one"));
   const std::string start = tag("Rigid", typed("rigid_ic", "initial_rigid_velocity",
                                                tag("rb", "bar") + tag("value", "1,0,0")));
   EXPECT_EQ(fault(steps(lasting(1, start), lasting(1, ""))), "none");

@@ -43,9 +43,11 @@ class FebReader {
     check_feb_domains(model_, file_.child(root, "Material"));
     model_.solids.assemble();
     each("MeshData", In::file, [&](const Element& e) { model_.solids.read_mesh_data(e); });
-    each("Boundary", In::file, [&](const Element& e) { model_.solids.read_boundary(e); });
+    each("Boundary", In::values, [&](const Element& e) { model_.solids.read_boundary(e); });
+    model_.solids.settle_boundary();
     model_.solids.add_trusses();
     each("Rigid", In::step, [&](const Element& e) { read_feb_rigid(model_, e); });
+    settle_feb_freedoms(model_);
     each("Loads", In::values, [&](const Element& e) { read_feb_loads(model_, e); });
     each("Discrete", In::step, [&](const Element& e) { model_.solids.read_discrete(e); });
     each("Initial", In::start, [&](const Element& e) { model_.solids.read_initial(e); });

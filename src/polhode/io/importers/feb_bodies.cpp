@@ -96,82 +96,6 @@ void read_body(FebModel& model, const Element& e, std::set<std::string>& taken) 
   model.bodies.push_back(std::move(body));
 }
 
-/// Whether a body's rotation is prescribed as a whole, or fixed while it is moved.
-bool turns_as_prescribed(const FebBody& body) {
-  const auto count = [&](Freedom kind) {
-    return std::count_if(body.freedoms.begin() + 3, body.freedoms.end(),
-                         [&](const FebFreedom& f) { return f.kind == kind; });
-  };
-  const bool moved = std::any_of(body.freedoms.begin(), body.freedoms.end(),
-                                 [](const FebFreedom& f) { return f.kind == Freedom::prescribed; });
-  return count(Freedom::free) == 0 && moved;
-}
-
-/// Freedoms of a body as `fixed`, `hold` and `motion`.
-void put_freedoms(FebModel& model, const FebBody& body, const NodeBuilder& make, SourceNode& node) {
-  static const char* const names[] = {"x", "y", "z", "rx", "ry", "rz"};
-  FebFile& file = model.file;
-  if (body.is_fixed()) {
-    make.put(node, "fixed", make.boolean(true));
-    return;
-  }
-  const auto& f = body.freedoms;
-  const bool moved = std::any_of(f.begin(), f.end(),
-                                 [](const FebFreedom& g) { return g.kind == Freedom::prescribed; });
-  const bool turned = turns_as_prescribed(body);
-  SourceNode hold = make.list(), motion = make.map();
-  int fixed_turns = 0;
-  for (std::size_t k = 0; k < 6; ++k) {
-    if (f[k].kind == Freedom::free || (k >= 3 && turned)) continue;
-    if (k < 3 && moved)
-      make.put(motion, names[k],
-               model.curves.node(f[k].kind == Freedom::fixed ? FebValue{} : f[k].value));
-    else if (k >= 3 && f[k].kind == Freedom::prescribed)
-      file.refuse(*f[k].at, "a rotation is prescribed while another one is free",
-                  "Fix or prescribe all of Ru, Rv, Rw, or use a joint.");
-    else
-      hold.children.push_back(make.text(names[k]));
-    if (k >= 3 && f[k].kind == Freedom::fixed) ++fixed_turns;
-  }
-  if (fixed_turns == 1)
-    file.approximated(*body.at,
-                      format("one rotation of {} is fixed: an angle of its axes, where FEBio has a "
-                             "component of the angular velocity",
-                             quote(body.material)));
-  if (turned) {
-    const auto value = [&](std::size_t k) {
-      return f[k].kind == Freedom::fixed ? FebValue{} : f[k].value;
-    };
-    if (body.euler) {
-      SourceNode euler = make.map();
-      make.put(euler, "sequence", make.text("XYZ"));
-      const double degree = 3.14159265358979323846 / 180.0;
-      make.put(euler, "angles", model.vector(*body.at, {value(3), value(4), value(5)}, degree));
-      make.put(motion, "euler", std::move(euler));
-    } else {
-      make.put(motion, "rotation_vector", model.vector(*body.at, {value(3), value(4), value(5)}));
-    }
-  }
-  if (!motion.keys.empty() && !hold.children.empty()) {
-    // A body has one of both: rotations are held by a joint of their own.
-    SourceNode joint = make.map(), free = make.list();
-    for (const char* name : names)
-      if (std::none_of(hold.children.begin(), hold.children.end(),
-                       [&](const SourceNode& held) { return held.text == name; }))
-        free.children.push_back(make.text(name));
-    make.put(joint, "type", make.text("generic"));
-    make.put(joint, "bodies", make.list({make.text("ground"), make.text(body.name)}));
-    make.put(joint, "at", make.vector(body.com));
-    make.put(joint, "axis", make.text("z"));
-    make.put(joint, "x_axis", make.text("x"));
-    make.put(joint, "free", std::move(free));
-    model.add_joint(*body.at, body.name + "_hold", std::move(joint));
-  } else if (!hold.children.empty()) {
-    make.put(node, "hold", std::move(hold));
-  }
-  if (!motion.keys.empty()) make.put(node, "motion", std::move(motion));
-}
-
 /// The convex hull of a body's nodes, to be drawn.
 void put_shape(const FebModel& model, const FebBody& body, const NodeBuilder& make,
                SourceNode& node) {
@@ -248,7 +172,7 @@ SourceNode write_feb_bodies(FebModel& model) {
       make.put(node, "inertia", make.inertia(inertia));
     }
     make.put(node, "position", make.vector(body.com));
-    put_freedoms(model, body, make, node);
+    put_feb_freedoms(model, body, make, node);
     const bool at_rest = !model.dynamic || body.is_fixed();
     if (body.velocity && !at_rest) make.put(node, "velocity", make.vector(*body.velocity));
     if (body.spin && !at_rest) make.put(node, "angular_velocity", make.vector(*body.spin));

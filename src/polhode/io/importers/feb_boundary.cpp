@@ -61,8 +61,9 @@ const std::vector<int>* FebSolids::named_nodes(const Element& e) {
 }
 
 void FebSolids::hold(const std::vector<int>& nodes, int component, int hold) {
+  Held& held = model_.step == nullptr ? held_ : held_in_[model_.step_number()];
   for (const int n : nodes) {
-    int& holder = held_.try_emplace(n, std::array{-1, -1, -1})
+    int& holder = held.try_emplace(n, std::array{-1, -1, -1})
                       .first->second[static_cast<std::size_t>(component)];
     const auto k = static_cast<std::size_t>(component);
     const FebHold& own = holds_[static_cast<std::size_t>(hold)];
@@ -97,6 +98,12 @@ void FebSolids::read_boundary(const Element& section) {
     }
     const std::vector<int>* nodes = named_nodes(*e);
     if (type == "rigid") {
+      if (model_.step != nullptr) {
+        file.refuse(*e, "<bc> of type \"rigid\" of one step of several is not read",
+                    "Put it outside the steps: nodes are bonded to a body throughout.");
+        continue;
+      }
+      static_cast<void>(file.boolean(*e, "clamp_shells", true));  // There are none.
       const FebBody* body = model_.body(*e, "rb");
       if (nodes == nullptr || body == nullptr) continue;
       for (const int n : *nodes) attached_.insert_or_assign(n, body->name);
@@ -106,6 +113,8 @@ void FebSolids::read_boundary(const Element& section) {
     FebHold condition{file.name(*e, name.empty() ? format("bc{}", number + 1) : name, hold_names_),
                       e,
                       type == "prescribed displacement",
+                      {},
+                      false,
                       {}};
     std::array<bool, 3> components{};
     const FebMap* map = nullptr;
@@ -113,7 +122,7 @@ void FebSolids::read_boundary(const Element& section) {
       const std::string dof = lower_case(file.text(*e, "dof"));
       map = map_of(*e, "value", file.xml.text(*e, "node_set").value_or(""));
       const FebValue value = value_of(*e, "value");
-      static_cast<void>(file.boolean(*e, "relative", false));  // The first step starts at zero.
+      condition.relative = file.boolean(*e, "relative", false);
       const int k = component_of(dof);
       if (k < 0) {
         file.xml.fault(*e, format("<dof> is {}", quote(dof)), "Write x, y or z.");
@@ -124,6 +133,11 @@ void FebSolids::read_boundary(const Element& section) {
     } else {
       components = {file.boolean(*e, "x_dof", false), file.boolean(*e, "y_dof", false),
                     file.boolean(*e, "z_dof", false)};
+      if (std::none_of(components.begin(), components.end(), [](bool c) { return c; })) {
+        file.xml.fault(*e, format("the <bc> {} fixes no component", quote(condition.name)),
+                       "Set x_dof, y_dof or z_dof to 1.");
+        continue;
+      }
     }
     if (map != nullptr && nodes != nullptr) {
       hold_by(*map, *nodes, condition);
@@ -133,12 +147,6 @@ void FebSolids::read_boundary(const Element& section) {
     for (int k = 0; k < 3; ++k)
       if (nodes != nullptr && components[static_cast<std::size_t>(k)]) hold(*nodes, k, number);
   }
-  for (const auto& [node, holders] : held_)
-    if (std::none_of(solids_.begin(), solids_.end(),
-                     [n = node](const FebSolid& s) { return s.place.contains(n); })) {
-      file.ignored.add(section, "a displacement of nodes of no deformable solid", "moves nothing");
-      break;
-    }
 }
 
 /// A condition for each value of a map, on the nodes that have it.

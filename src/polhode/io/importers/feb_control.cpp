@@ -204,6 +204,7 @@ void write_feb_control(FebModel& model, SourceNode probes, SourceNode& root) {
   }
   if (model.dynamic && all.radius != 1.0) make.put(analysis, "rho_inf", make.number(all.radius));
   make.put(root, "analysis", std::move(analysis));
+  if (model.frames && all.every == 0.0 && !all.automatic) all.every = all.step;
   if (all.every > 0.0) make.put(output, "every", make.number(all.every));
   if (!probes.keys.empty()) make.put(output, "probes", std::move(probes));
   if (!output.keys.empty()) make.put(root, "output", std::move(output));

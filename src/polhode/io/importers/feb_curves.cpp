@@ -87,9 +87,7 @@ std::vector<FebPiece> during(const FebWindow& window, const std::vector<FebPiece
   if (window.begin > 0.0) own.push_back({0.0, window.begin, {}});
   for (FebPiece piece : pieces) {
     if (piece.to <= window.begin || piece.from >= window.end) continue;
-    if (piece.from < window.begin) piece = moved(piece, window.begin);
-    piece.to = std::min(piece.to, window.end);
-    own.push_back(piece);
+    own.push_back(between(piece, window.begin, window.end));
   }
   if (window.end < until) own.push_back({window.end, until, {}});
   return own;
@@ -127,6 +125,12 @@ double FebPiece::at(double t) const {
   double value = 0.0;
   for (std::size_t k = powers.size(); k-- > 0;) value = value * (t - from) + powers[k];
   return value;
+}
+
+FebPiece between(FebPiece piece, double begin, double end) {
+  if (piece.from < begin) piece = moved(piece, begin);
+  piece.to = std::min(piece.to, end);
+  return piece;
 }
 
 std::vector<FebPiece> FebCurve::pieces(double until, std::size_t most) const {

@@ -18,6 +18,9 @@ struct FebPiece {
   [[nodiscard]] double at(double t) const;
 };
 
+/// The part of a piece between two times.
+[[nodiscard]] FebPiece between(FebPiece piece, double begin, double end);
+
 /// A load curve as FEBio reads it.
 struct FebCurve {
   enum class Rule : unsigned char { linear, step, smooth, smooth_step };
@@ -36,6 +39,14 @@ struct FebWindow {
   double begin = 0.0, end = 0.0;  ///< [s]
 };
 
+/// A value in one of several steps.
+struct FebSpan {
+  double begin = 0.0, end = 0.0;  ///< [s]
+  std::optional<FebValue> value;  ///< Nothing: that at the start of the step.
+  bool relative = false;          ///< Added to that at the start of the step.
+  bool released = false;          ///< Goes on as it was, as nothing follows it any more.
+};
+
 /// The load controllers of a file, as values of a model file.
 class FebCurves {
  public:
@@ -49,6 +60,9 @@ class FebCurves {
 
   /// A value over time, times a factor.
   [[nodiscard]] SourceNode node(const FebValue& value, double factor = 1.0);
+  /// A value that each step gives in its own way.
+  [[nodiscard]] SourceNode node(const XmlFile::Element& at, const std::vector<FebSpan>& spans,
+                                double factor = 1.0);
   /// Times of the points of a load curve; none of other controllers.
   [[nodiscard]] std::vector<std::array<double, 2>> points(int controller) const;
 
@@ -76,6 +90,10 @@ class FebCurves {
     std::string name;
     const XmlFile::Element* at;  ///< First value that uses it.
   };
+  /// Whether a value follows a load curve.
+  [[nodiscard]] bool is_curve(const FebValue& value) const;
+  /// Pieces of a value between two times; nothing after an error.
+  std::optional<std::vector<FebPiece>> pieces_of(const FebSpan& span);
   void read_pid(const XmlFile::Element& e, Controller& controller);
   SourceNode pid_node(const NodeBuilder& make, const FebValue& value, double factor);
   void read_curve(const XmlFile::Element& e, Controller& controller);

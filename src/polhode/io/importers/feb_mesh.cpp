@@ -91,8 +91,14 @@ class MeshReader {
           part->domain = e;
         }
         if (std::string_view(tag) == "ShellDomain") {
-          file_.refuse(*e, format("the domain {} has shells, which are not there", quote(name)),
-                       "Mesh the part with solid elements, or make it rigid.");
+          file_.refuse(
+              *e,
+              format("the <ShellDomain> {} of {} elements is not read, as there are no "
+                     "shells",
+                     quote(name), part == mesh_.parts.end() ? "shell" : part->type),
+              "Mesh its thickness with solid elements, one layer of hex20 or penta15 for a "
+              "plate; a rigid part needs solid elements too, or none if all its freedoms "
+              "are fixed.");
           continue;
         }
         if (part != mesh_.parts.end()) {

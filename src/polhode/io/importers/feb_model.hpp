@@ -20,6 +20,8 @@ struct FebFreedom {
   Kind kind = Kind::free;
   FebValue value;
   const XmlFile::Element* at = nullptr;
+  bool relative = false;         ///< The value is added to that at the start of the step.
+  std::vector<FebSpan> by_step;  ///< Value in each step, in place of `value`; empty: the same.
 };
 
 /// A rigid body: a material of type "rigid body".
@@ -32,14 +34,18 @@ struct FebBody {
   Vec3 com = Vec3::Zero();        ///< FEBio's centre of mass, about which it rotates [m].
   Mat3 inertia = Mat3::Zero();    ///< As FEBio has it [kg m²].
   std::array<FebFreedom, 6> freedoms;
-  bool euler = false;  ///< The rotations are angles about fixed axes x, y, z [deg].
+  bool euler = false;   ///< The rotations are angles about fixed axes x, y, z [deg].
+  bool turned = false;  ///< A rotation is prescribed as a whole.
+  /// Freedoms of single steps, by number of the step, in addition to those of all.
+  std::map<std::size_t, std::array<FebFreedom, 6>> in_step;
   std::optional<Vec3> velocity, spin;
   std::vector<int> nodes;               ///< Of its elements, ascending.
   double volume = 0.0;                  ///< Of its elements [m³].
   std::set<std::string> groups, meets;  ///< Of contact; none: it does not touch.
 
   [[nodiscard]] bool is_fixed() const;
-  [[nodiscard]] bool can_move() const;  ///< Whether a freedom is free.
+  [[nodiscard]] bool can_move()
+      const;  ///< Whether a freedom is free, in one of the steps at least.
   /// Whether FEBio's centre of mass is that of the mesh.
   [[nodiscard]] bool is_centred() const;
 };
@@ -50,6 +56,7 @@ struct FebStep {
   const XmlFile::Element* control = nullptr;
   double begin = 0.0, end = 0.0;   ///< [s]
   std::vector<std::string> items;  ///< Joints and loads that act in this step alone.
+  std::vector<std::string> ended;  ///< Those that act from the start up to this step.
 };
 
 /// Places of a section in a file of several steps: outside them, in the first one, in any with
@@ -68,6 +75,7 @@ struct FebModel {
   std::vector<FebBody> bodies;
   FebSolids solids;
   bool dynamic = false;
+  bool frames = false;  ///< Whether the log file asks for values that are in frames alone.
   double duration = 0.0;
   std::vector<FebStep> steps;     ///< One at least.
   const FebStep* step = nullptr;  ///< Whose section is read; null: one that acts from start to end.
@@ -78,6 +86,14 @@ struct FebModel {
   /// Kind, "joint" or "load", and name of each connector; "" if it became none.
   std::vector<std::pair<std::string, std::string>> connectors;
 
+  /// Number of the step that is read.
+  [[nodiscard]] std::size_t step_number() const {
+    return static_cast<std::size_t>(step - steps.data());
+  }
+  /// Value over all steps: null, held where it is then.
+  /// @param of  Value of a step; null if it holds.
+  [[nodiscard]] std::vector<FebSpan> spans(
+      const std::function<std::optional<FebSpan>(std::size_t)>& of) const;
   /// Reads all sections of a name, in the file and in its steps.
   void each_section(const char* name, FebIn in,
                     const std::function<void(const XmlFile::Element&)>& read);
@@ -95,8 +111,14 @@ struct FebModel {
 void read_feb_materials(FebModel& model, const XmlFile::Element& section);
 /// Bodies of a model file.
 [[nodiscard]] SourceNode write_feb_bodies(FebModel& model);
+/// Freedoms of a body as `fixed`, `hold` and `motion`.
+void put_feb_freedoms(FebModel& model, const FebBody& body, const NodeBuilder& make,
+                      SourceNode& node);
 /// Reads <Rigid>.
 void read_feb_rigid(FebModel& model, const XmlFile::Element& section);
+/// Freedoms of bodies over several steps: those that are never free, and those that one of the
+/// steps releases, as joints.
+void settle_feb_freedoms(FebModel& model);
 /// Reads one <rigid_connector>.
 void read_feb_connector(FebModel& model, const XmlFile::Element& e);
 /// Reads <Loads>.

@@ -47,8 +47,13 @@ class LogReader {
         read_nodes(*e);
       else {
         file_.xml.skip(*e);
-        file_.ignored.add(*e, format("<{}> of the log file", kind),
-                          "is not recorded: results.h5 has stresses, strains and contacts");
+        if (kind == "element_data") {
+          model_.frames = true;
+          file_.approximated(*e, "<element_data> of the log file is in the frames of results.h5");
+        } else {
+          file_.ignored.add(*e, format("<{}> of the log file", kind),
+                            "is not recorded: results.h5 has stresses, strains and contacts");
+        }
       }
     }
   }
@@ -78,7 +83,9 @@ class LogReader {
       if (asks_for(data, {"omx", "omy", "omz", "alx", "aly", "alz"}))
         make.put(probe, "angular", make.boolean(true));
       add(e, body.name, std::move(probe));
-      if (asks_for(data, {"Fx", "Fy", "Fz", "Mx", "My", "Mz"}))
+      if (!asks_for(data, {"Fx", "Fy", "Fz", "Mx", "My", "Mz"})) continue;
+      model_.frames = true;
+      if (!model_.solids.is_bonded_to(body.name))
         file_.ignored.add(
             e, "the force on a rigid body",
             "is that of its joints, such as <body>.hold and <body>.motion, in results.h5");
@@ -86,6 +93,7 @@ class LogReader {
   }
 
   void read_connectors(const Element& e) {
+    model_.frames = true;
     const std::vector<std::int64_t> ids = file_.integers(e);
     for (std::size_t k = 0; k < model_.connectors.size(); ++k) {
       const auto& [kind, name] = model_.connectors[k];
@@ -138,6 +146,14 @@ class LogReader {
 };
 
 }  // namespace
+
+bool FebSolids::is_bonded_to(const std::string& body) const {
+  return std::any_of(attached_.begin(), attached_.end(), [&](const auto& node) {
+    return node.second == body && std::any_of(solids_.begin(), solids_.end(), [&](const auto& s) {
+             return s.place.contains(node.first);
+           });
+  });
+}
 
 bool FebSolids::put_node(int node, const NodeBuilder& make, SourceNode& probe) const {
   for (const FebSolid& solid : solids_) {

@@ -29,25 +29,19 @@ class RigidReader {
 
   void read_constraint(const Element& e) {
     const std::string type = file_.type(e);
-    if (model_.step != nullptr && type != "rigid_fixed") return not_in_step(e);
     FebBody* body = model_.body(e, "rb");
     if (type == "rigid_fixed") {
       static const char* const tags[] = {"Rx_dof", "Ry_dof", "Rz_dof",
                                          "Ru_dof", "Rv_dof", "Rw_dof"};
-      if (model_.step != nullptr && body != nullptr) {
-        const bool all = std::all_of(std::begin(tags), std::end(tags),
-                                     [&](const char* tag) { return file_.boolean(e, tag, false); });
-        return all ? hold_in_step(e, *body) : not_in_step(e);
-      }
       for (std::size_t k = 0; k < 6; ++k)
         if (file_.boolean(e, tags[k], false) && body != nullptr &&
-            body->freedoms[k].kind == Freedom::free)
-          body->freedoms[k] = {Freedom::fixed, {}, &e};
+            freedoms(*body)[k].kind == Freedom::free)
+          freedoms(*body)[k] = {Freedom::fixed, {}, &e, false, {}};
     } else if (type == "rigid_displacement" || type == "rigid_rotation") {
       const int k = dof(e, type == "rigid_rotation");
       const FebValue value = file_.value(e, "value");
-      static_cast<void>(file_.boolean(e, "relative", false));  // The first step starts at zero.
-      if (k >= 0 && body != nullptr) prescribe(e, *body, k, value);
+      const bool relative = file_.boolean(e, "relative", false);
+      if (k >= 0 && body != nullptr) prescribe(e, *body, k, value, relative);
     } else if (type == "rigid_rotation_vector" || type == "rigid_euler_angles" ||
                type == "rigid_euler_vector") {
       const bool euler = type != "rigid_rotation_vector";
@@ -56,9 +50,14 @@ class RigidReader {
       if (euler) file_.ignored.skip(e, {"convention"});
       for (int k = 0; k < 3; ++k) {
         const FebValue value = file_.value(e, euler ? angles[k] : vectors[k]);
-        if (body != nullptr) prescribe(e, *body, 3 + k, value);
+        if (body != nullptr) prescribe(e, *body, 3 + k, value, false);
       }
-      if (body != nullptr) body->euler = euler;
+      if (body == nullptr) return;
+      if (body->turned && euler != body->euler)
+        file_.refuse(e, format("{} turns by angles and by vectors", quote(body->material)),
+                     "Use rigid_euler_angles or rigid_rotation_vector alone.");
+      body->turned = true;
+      body->euler = euler;
     } else if (!type.empty()) {
       unknown(e, type);
     }
@@ -92,21 +91,14 @@ class RigidReader {
   }
 
   void not_in_step(const Element& e) {
-    file_.refuse(
-        e, format("<{}> of one step of several is not read", e.Name()),
-        "Put it outside the steps, with load curves over all of them; a rigid_fixed of all "
-        "six freedoms is read.");
+    file_.refuse(e, format("<{}> of one step of several is not read", e.Name()),
+                 "Put it outside the steps, or in the first one.");
   }
 
  private:
-  /// A body that one step of several holds where it is then.
-  void hold_in_step(const Element& e, const FebBody& body) {
-    const NodeBuilder make = file_.make(e);
-    SourceNode joint = make.map();
-    make.put(joint, "type", make.text("fixed"));
-    make.put(joint, "bodies", make.list({make.text("ground"), make.text(body.name)}));
-    make.put(joint, "at", make.vector(body.com));
-    model_.add_joint(e, body.name + "_fixed", std::move(joint));
+  /// Freedoms of a body in the step that is read, or in all.
+  std::array<FebFreedom, 6>& freedoms(FebBody& body) {
+    return model_.step == nullptr ? body.freedoms : body.in_step[model_.step_number()];
   }
 
   void unknown(const Element& e, const std::string& type) {
@@ -124,13 +116,13 @@ class RigidReader {
     return -1;
   }
 
-  void prescribe(const Element& e, FebBody& body, int k, const FebValue& value) {
-    FebFreedom& freedom = body.freedoms[static_cast<std::size_t>(k)];
+  void prescribe(const Element& e, FebBody& body, int k, const FebValue& value, bool relative) {
+    FebFreedom& freedom = freedoms(body)[static_cast<std::size_t>(k)];
     if (freedom.kind == Freedom::prescribed)
       file_.xml.fault(e, format("a freedom of {} is prescribed twice", quote(body.material)),
                       "Keep one of them.");
     // FEBio lets what is prescribed override what is fixed.
-    freedom = {Freedom::prescribed, value, &e};
+    freedom = {Freedom::prescribed, value, &e, relative, {}};
   }
 
   /// A ramp over the analysis, or the step, up to a value, as an expression.

@@ -156,7 +156,7 @@ void FebSolids::put_bonds(const FebSolid& solid, const NodeBuilder& make, Source
     SourceNode entry = make.map();
     make.put(entry, "nodes", node_list(make, solid, nodes));
     for (std::size_t k = 0; k < 3; ++k)
-      if ((key.second >> k & 1) != 0) make.put(entry, names[k], model_.curves.node(hold.values[k]));
+      if ((key.second >> k & 1) != 0) make.put(entry, names[k], hold_node(hold, k));
     std::string name = hold.name;
     for (int k = 2; !taken.insert(name).second; ++k) name = format("{}_{}", hold.name, k);
     make.put(prescribed, name, std::move(entry));

@@ -68,6 +68,8 @@ struct FebHold {
   const XmlFile::Element* at = nullptr;
   bool prescribed = false;         ///< Else fixed.
   std::array<FebValue, 3> values;  ///< By component.
+  bool relative = false;           ///< Values are added to those at the start of the step.
+  std::vector<int> by_step;  ///< Condition of each step in place of this one; empty: the same.
 };
 
 /// A material of linear trusses.
@@ -87,6 +89,8 @@ class FebSolids {
   void assemble();
   /// Reads <Boundary>.
   void read_boundary(const XmlFile::Element& section);
+  /// Merges the conditions of several steps.
+  void settle_boundary();
   /// Reads <MeshData>: directions of fibres by element, maps of nodes and surfaces.
   void read_mesh_data(const XmlFile::Element& section);
   /// Makes springs of trusses.
@@ -109,11 +113,18 @@ class FebSolids {
   void write(SourceNode& root);
   /// Nodes of a set that a tag names, also "@surface:name"; null after an error.
   const std::vector<int>* named_nodes(const XmlFile::Element& e);
+  /// Whether nodes of a solid are bonded to a body, by its name.
+  [[nodiscard]] bool is_bonded_to(const std::string& body) const;
   /// Adds to a probe the solid or the body of a node. @returns whether it has one.
   bool put_node(int node, const NodeBuilder& make, SourceNode& probe) const;
   [[nodiscard]] bool empty() const { return solids_.empty(); }
 
  private:
+  using Held = std::map<int, std::array<int, 3>>;
+  void merge_held();
+  /// Refuses a condition that some of several steps do not have.
+  void refuse_released(int hold, int node);
+  SourceNode hold_node(const FebHold& hold, std::size_t component);
   SourceNode node_list(const NodeBuilder& make, const FebSolid& solid,
                        const std::vector<int>& nodes) const;
   /// A surface that touches another one: of a solid or of a rigid body.
@@ -170,8 +181,9 @@ class FebSolids {
   std::set<std::string> material_names_, solid_names_, hold_names_;
   std::vector<FebSolid> solids_;
   std::vector<FebHold> holds_;
-  std::map<int, std::array<int, 3>> held_;  ///< Number of the condition by node and component.
-  std::map<int, std::string> attached_;     ///< Body to which a node is attached, by node.
+  Held held_;                            ///< Number of the condition by node and component.
+  std::map<std::size_t, Held> held_in_;  ///< Those of single steps, by number of the step.
+  std::map<int, std::string> attached_;  ///< Body to which a node is attached, by node.
   std::map<std::string, std::vector<int>> surface_nodes_;
   std::set<std::string> contact_names_;
   std::set<const XmlFile::Element*> merged_;  ///< Ties whose surfaces share their nodes.

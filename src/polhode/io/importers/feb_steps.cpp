@@ -42,7 +42,7 @@ bool read_feb_steps(FebModel& model) {
                      "Add it, in the file or in each step.");
       return false;
     }
-    model.steps.push_back({e, control, 0.0, 0.0, {}});
+    model.steps.push_back({e, control, 0.0, 0.0, {}, {}});
   }
   read_feb_control(model);
   return true;
@@ -92,6 +92,7 @@ void write_feb_steps(FebModel& model, SourceNode& root) {
   for (std::size_t k = 0; k < model.steps.size(); ++k) {
     std::vector<std::string> off;
     if (k > 0) off = model.steps[k - 1].items;
+    off.insert(off.end(), model.steps[k].ended.begin(), model.steps[k].ended.end());
     for (std::size_t j = 1; k == 0 && j < model.steps.size(); ++j)
       off.insert(off.end(), model.steps[j].items.begin(), model.steps[j].items.end());
     SourceNode event = make.map();
