@@ -372,7 +372,7 @@ TEST_F(Feb, RequestsForTheLogFileBecomeProbes) {
   EXPECT_EQ(m.output.probes[2].name, "node_7");
   const std::string said = notes(text);
   EXPECT_THAT(said, HasSubstr("requests for the log file become probes"));
-  EXPECT_THAT(said, HasSubstr("<element_data> of the log file is not recorded"));
+  EXPECT_THAT(said, HasSubstr("<element_data> of the log file is in the frames of results.h5"));
   EXPECT_THAT(fault(two_bodies(control(), "",
                                tag("Output", tag("logfile", request("node_data", "x", "70"))))),
               HasSubstr("there is no node 70"));

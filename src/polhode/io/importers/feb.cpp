@@ -45,6 +45,7 @@ class FebReader {
     each("MeshData", In::file, [&](const Element& e) { model_.solids.read_mesh_data(e); });
     each("Boundary", In::values, [&](const Element& e) { model_.solids.read_boundary(e); });
     model_.solids.settle_boundary();
+    model_.solids.add_beams();
     model_.solids.add_trusses();
     each("Rigid", In::step, [&](const Element& e) { read_feb_rigid(model_, e); });
     settle_feb_freedoms(model_);

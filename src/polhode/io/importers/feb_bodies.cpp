@@ -73,8 +73,8 @@ void read_body(FebModel& model, const Element& e, std::set<std::string>& taken) 
   const bool overrides = file.boolean(e, "override_com", true);
   for (const char* tag : {"E", "v"})
     if (const Element* unused = file.child(e, tag)) file.xml.skip(*unused);
-  if (const Element* parent = file.child(e, "parent_id"))
-    file.refuse(*parent, "<parent_id> is not read", "Connect the bodies by a rigid lock.");
+  if (const auto parent = file.number(e, "parent_id"); parent && *parent > 0.0)
+    body.parent = static_cast<std::int64_t>(*parent);
   integrate(model, body, std::max(0.0, density));
   body.com = given && overrides ? *given : body.mesh.com;
   body.inertia = body.mesh.inertia;
@@ -119,6 +119,28 @@ void put_shape(const FebModel& model, const FebBody& body, const NodeBuilder& ma
   }
 }
 
+/// Locks each body that has a parent to it.
+void lock_to_parents(FebModel& model) {
+  for (const FebBody& body : model.bodies) {
+    if (!body.parent) continue;
+    const auto parent = std::find_if(model.bodies.begin(), model.bodies.end(),
+                                     [&](const FebBody& b) { return b.id == *body.parent; });
+    if (parent == model.bodies.end() || &*parent == &body) {
+      model.file.xml.fault(*body.at,
+                           format("<parent_id> of {} is {}, which is no other rigid body",
+                                  quote(body.material), *body.parent),
+                           "Give the id of a material of type \"rigid body\".");
+      continue;
+    }
+    const NodeBuilder make = model.file.make(*body.at);
+    SourceNode joint = make.map();
+    make.put(joint, "type", make.text("fixed"));
+    make.put(joint, "bodies", make.list({make.text(parent->name), make.text(body.name)}));
+    make.put(joint, "at", make.vector(body.com));
+    model.add_joint(*body.at, body.name + "_parent", std::move(joint));
+  }
+}
+
 }  // namespace
 
 bool FebBody::is_fixed() const {
@@ -146,6 +168,7 @@ void read_feb_materials(FebModel& model, const Element& section) {
     else if (!type.empty())
       model.solids.read_material(*e, type);
   }
+  lock_to_parents(model);
 }
 
 SourceNode write_feb_bodies(FebModel& model) {

@@ -89,6 +89,17 @@ void FebSolids::read_boundary(const Element& section) {
   for (const Element* e : file.xml.children(section, "bc")) {
     const std::string type = file.type(*e);
     const std::string name = file.xml.text(*e, "name").value_or("");
+    if (type == "zero rotation" && model_.step == nullptr) {
+      const std::vector<int>* nodes = named_nodes(*e);
+      const bool all = file.boolean(*e, "u_dof", false) && file.boolean(*e, "v_dof", false) &&
+                       file.boolean(*e, "w_dof", false);
+      if (!all)
+        file.refuse(*e, "<bc> of type \"zero rotation\" fixes some of the rotations alone",
+                    "Fix all three of them.");
+      else if (nodes != nullptr)
+        clamped_.insert(nodes->begin(), nodes->end());
+      continue;
+    }
     if (type != "zero displacement" && type != "prescribed displacement" && type != "rigid") {
       static_cast<void>(file.xml.text(*e, "node_set"));
       if (!type.empty())

@@ -98,8 +98,8 @@ std::string add_ground_joint(FebModel& model, const FebBody& body, const Freedom
 }
 
 /// A freedom as it is in the first steps. @param count  Number of steps.
-FebFreedom during(const FebModel& model, const std::vector<Freedoms>& by_step, std::size_t k,
-                  std::size_t count) {
+FebFreedom in_first_steps(const FebModel& model, const std::vector<Freedoms>& by_step,
+                          std::size_t k, std::size_t count) {
   FebFreedom result = by_step[0][k];
   bool moved = false;
   for (std::size_t s = 0; s < count; ++s) {
@@ -160,7 +160,7 @@ void settle(FebModel& model, FebBody& body) {
             "rigid_connector in this step.");
         return;
       }
-    if (count > 0) until[count][k] = during(model, by_step, k, count);
+    if (count > 0) until[count][k] = in_first_steps(model, by_step, k, count);
   }
   body.freedoms = until.contains(steps) ? until[steps] : Freedoms{};
   for (const auto& [count, freedoms] : until) {

@@ -11,13 +11,19 @@ namespace polhode::io {
 void FebSolids::settle_boundary() {
   merge_held();
   for (const auto& [node, holders] : held_)
-    if (std::none_of(solids_.begin(), solids_.end(),
-                     [n = node](const FebSolid& s) { return s.place.contains(n); })) {
+    if (!on_solid(node) && !on_beam(node)) {
       const int hold = *std::max_element(holders.begin(), holders.end());
       model_.file.ignored.add(*holds_[static_cast<std::size_t>(hold)].at,
                               "a displacement of nodes of no deformable solid", "moves nothing");
       return;
     }
+}
+
+bool FebSolids::on_beam(int node) const {
+  return std::any_of(model_.mesh.parts.begin(), model_.mesh.parts.end(), [&](const FebPart& part) {
+    return beam_sections_.contains(part.material) &&
+           std::find(part.nodes.begin(), part.nodes.end(), node) != part.nodes.end();
+  });
 }
 
 void FebSolids::merge_held() {

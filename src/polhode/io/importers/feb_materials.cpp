@@ -260,6 +260,7 @@ void FebSolids::read_material(const XmlFile::Element& e, const std::string& type
                      "Give a value above zero.");
     return;
   }
+  if (type == "linear beam") return read_beam_material(e, name);
   FebLaw law(file, e, name);
   std::optional<SourceNode> node = law.read(type);
   if (!node) return;

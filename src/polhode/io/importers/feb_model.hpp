@@ -29,6 +29,7 @@ struct FebBody {
   std::string material;  ///< As in the file.
   std::string name;      ///< In the model.
   std::int64_t id = 0;
+  std::optional<std::int64_t> parent;  ///< Body to which it is locked, by its number.
   const XmlFile::Element* at = nullptr;
   geometry::MassProperties mesh;  ///< By integration; no mass without elements.
   Vec3 com = Vec3::Zero();        ///< FEBio's centre of mass, about which it rotates [m].

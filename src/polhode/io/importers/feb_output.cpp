@@ -165,6 +165,10 @@ bool FebSolids::put_node(int node, const NodeBuilder& make, SourceNode& probe) c
   }
   const auto body = attached_.find(node);
   if (body == attached_.end()) return false;
+  if (body->second.find('.') != std::string::npos) {  // A node of a beam.
+    make.put(probe, "body", make.text(body->second));
+    return true;
+  }
   for (const FebBody& b : model_.bodies) {
     if (b.name != body->second) continue;
     make.put(probe, "body", make.text(b.name));

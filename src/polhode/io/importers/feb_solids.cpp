@@ -209,6 +209,8 @@ void FebSolids::write(SourceNode& root) {
     make.put(root, "materials", std::move(materials));
     make.put(root, "solids", std::move(solids));
   }
+  if (sections_.kind == SourceNode::Kind::kMap) make.put(root, "sections", std::move(sections_));
+  if (beams_.kind == SourceNode::Kind::kMap) make.put(root, "beams", std::move(beams_));
   if (contacts_.kind != SourceNode::Kind::kMap) return;
   SourceNode contacts = make.map();
   make.put(contacts, "pairs", std::move(contacts_));

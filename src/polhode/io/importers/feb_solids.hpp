@@ -95,6 +95,8 @@ class FebSolids {
   void read_mesh_data(const XmlFile::Element& section);
   /// Makes springs of trusses.
   void add_trusses();
+  /// Makes beams of linear beams.
+  void add_beams();
   /// Reads <Discrete>: springs between nodes.
   void read_discrete(const XmlFile::Element& section);
   /// Reads <Initial>.
@@ -117,10 +119,18 @@ class FebSolids {
   [[nodiscard]] bool is_bonded_to(const std::string& body) const;
   /// Adds to a probe the solid or the body of a node. @returns whether it has one.
   bool put_node(int node, const NodeBuilder& make, SourceNode& probe) const;
-  [[nodiscard]] bool empty() const { return solids_.empty(); }
+  [[nodiscard]] bool empty() const {
+    return solids_.empty() && beams_.kind != SourceNode::Kind::kMap;
+  }
 
  private:
   using Held = std::map<int, std::array<int, 3>>;
+  void read_beam_material(const XmlFile::Element& e, const std::string& name);
+  void add_beam(const FebPart& part, const std::string& section, const std::vector<int>& chain);
+  /// Attaches a node of a beam to what is there already.
+  void hold_beam_node(const FebPart& part, int node, const std::string& name);
+  [[nodiscard]] bool on_solid(int node) const;
+  [[nodiscard]] bool on_beam(int node) const;
   void merge_held();
   /// Refuses a condition that some of several steps do not have.
   void refuse_released(int hold, int node);
@@ -174,8 +184,12 @@ class FebSolids {
               const std::vector<std::vector<int>>& facets);
 
   FebModel& model_;
-  std::map<std::string, FebMaterial> materials_;                   ///< By name in the file.
-  std::map<std::string, FebTruss> trusses_;                        ///< Likewise.
+  std::map<std::string, FebMaterial> materials_;      ///< By name in the file.
+  std::map<std::string, FebTruss> trusses_;           ///< Likewise.
+  std::map<std::string, std::string> beam_sections_;  ///< Sections of beams, likewise.
+  std::set<std::string> section_names_;
+  std::set<int> clamped_;        ///< Nodes of beams without rotation.
+  SourceNode sections_, beams_;  ///< Maps if there are any.
   std::unordered_map<std::int64_t, FebElementData> element_data_;  ///< By number of the element.
   std::map<std::string, FebMap> maps_;
   std::set<std::string> material_names_, solid_names_, hold_names_;
