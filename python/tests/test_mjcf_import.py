@@ -59,6 +59,7 @@ SUM, LINE, SITE = 'tendon="s"', 'tendon="t"', 'site="tip"'
 FILTERED = 'dyntype="filter" dynprm="0.1" gainprm="2" biastype="affine" biasprm="0.1 -1 -0.05"'
 BOUNDED = 'dyntype="filter" dynprm="0.1" actrange="-1 0.2"'
 ALONG = 'gear="3 -2 1 0.1 0.2 -0.1"'
+FREE = '<freejoint name="f"/>'
 CASES = {
     "keyframe": {},
     "springdamper": {"shoulder": 'springdamper="0.1 0.6" armature="0.02"'},
@@ -112,6 +113,9 @@ CASES = {
     "a medium": {"more": '<option density="40" viscosity="0.3"/>'},
     "gravity that is held in part": {"shoulder": 'damping="0.1"', "compensated": 'gravcomp="0.6"'},
     "an armature of a free joint": {"free": '<joint type="free" armature="0.3"/>'},
+    "a motor of a free joint": {"free": FREE, "more": acts(f'motor joint="f" {ALONG}'), "controls": 'ctrl="0.8"'},
+    "a motor of a free joint in the world": {"free": FREE, "more": acts(f'motor jointinparent="f" {ALONG}'),
+                                             "controls": 'ctrl="0.8"'},
     "a damping ratio of a sum": {"more": BELT.format("", f'<position {SUM} kp="4" dampratio="0.6" gear="1.2"/>'),
                                  "controls": 'ctrl="0.4"'},
 }

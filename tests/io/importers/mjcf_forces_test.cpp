@@ -109,6 +109,41 @@ TEST_F(Mjcf, MotorsOfSitesAreForcesAndMoments) {
               HasSubstr("the actuator 'm' does not act on a joint, tendon or site"));
 }
 
+TEST_F(Mjcf, MotorsOfBallAndFreeJointsAreForcesAndMoments) {
+  const auto model = [&](const std::string& actuator) {
+    return "<worldbody><body name='p' euler='90 0 0'><body name='b'><joint name='ball' "
+           "type='ball'/>" +
+           kBall + "<body name='c'><joint name='inner' type='ball'/>" + kBall +
+           "</body></body></body><body name='d'><freejoint name='free'/>" + kBall +
+           "</body></worldbody><actuator><" + actuator + "/></actuator><keyframe><key ctrl='2'/>" +
+           "</keyframe>";
+  };
+  const auto vector = [&](const std::string& actuator, const std::string& name, bool own_axes) {
+    const Model read_model = read(model(actuator));
+    const LoadSpec* load = load_of(read_model, name);
+    if (load == nullptr) return Vec3(Vec3::Constant(1e9));
+    EXPECT_EQ(load->body_fixed, own_axes);
+    Vec3 value;
+    for (std::size_t k = 0; k < 3; ++k) value[static_cast<int>(k)] = (*(*load->vector)[k])(0.0);
+    return value;
+  };
+  const std::string free = "motor name='m' joint='free' gear='1 2 3 4 5 6'";
+  EXPECT_EQ(vector(free, "m", false), Vec3(2, 4, 6));
+  EXPECT_EQ(vector(free, "m_2", true), Vec3(8, 10, 12));
+  EXPECT_EQ(vector("motor name='m' jointinparent='free' gear='1 2 3 4 5 6'", "m_moment", false),
+            Vec3(8, 10, 12));
+  EXPECT_EQ(vector("motor name='m' joint='ball' gear='1 2 3'", "m", true), Vec3(2, 4, 6));
+  // About the parent's axes, which are turned by 90 degrees about x: (x, y, z) is (x, -z, y).
+  EXPECT_LT(
+      (vector("motor name='m' jointinparent='ball' gear='1 2 3'", "m", false) - Vec3(2, -6, 4))
+          .norm(),
+      kRounding);
+  EXPECT_THAT(fault(model("motor name='m' joint='inner'")),
+              HasSubstr("the actuator 'm' turns the ball 'inner' between two bodies that move"));
+  EXPECT_THAT(fault(model("position name='m' joint='ball'")),
+              HasSubstr("the actuator 'm' is a servo of 'ball', which has several coordinates"));
+}
+
 // x_1 + x_2 = x with a spring, beside the same of one cart with twice the stiffness: both carts
 // move together, and 2 x'' = -k (2 x) - d (2 x').
 TEST_F(Mjcf, SpringsOfSumsOfCoordinates) {

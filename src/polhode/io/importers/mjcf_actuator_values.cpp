@@ -33,6 +33,8 @@ class ActuatorSum {
           std::pair{"jointinparent", &a_.joint}, std::pair{"tendon", &a_.tendon},
           std::pair{"site", &a_.site}, std::pair{"refsite", &a_.reference}})
       if (auto given = xml_.text(e, attribute)) *value = std::move(*given);
+    if (e.Attribute("joint") != nullptr || e.Attribute("jointinparent") != nullptr)
+      a_.in_parent = e.Attribute("jointinparent") != nullptr;
     number("group", a_.group);
     partial("gear", a_.gear, 6);
     range("ctrlrange", "ctrllimited", a_.control);

@@ -17,6 +17,7 @@ struct MjcfActuator {
   const XmlFile::Element* at = nullptr;
   std::string kind;  ///< Its own tag.
   std::string name, joint, tendon, site, reference;
+  bool in_parent = false;  ///< Its moment on a ball or free joint has the axes of the parent.
   double group = 0.0;
   std::vector<double> gear{1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   std::string gain_type = "fixed", bias_type = "none", dynamics = "none";

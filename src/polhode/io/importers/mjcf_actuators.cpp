@@ -176,6 +176,9 @@ class ActuatorReader {
   void act() {
     if (!of_->site.empty()) return act_on_site();
     if (!of_->joint.empty()) {
+      for (const RobotJoint& joint : robot_.joints)
+        if (joint.name == of_->joint && (joint.type == "spherical" || joint.type == "floating"))
+          return act_on_ball(joint);
       if (single_joint(file_.xml, robot_, *at_, of_->joint) != nullptr)
         add(name_, of_->joint, of_->gear[0]);
       return;
@@ -265,6 +268,35 @@ class ActuatorReader {
     }
     push.force = axes * Vec3(of_->gear[0], of_->gear[1], of_->gear[2]);
     push.moment = axes * Vec3(of_->gear[3], of_->gear[4], of_->gear[5]);
+    robot_.pushes.push_back(std::move(push));
+  }
+
+  /// A moment in a ball joint of a body that does not move, in the axes of either body; likewise in
+  /// a free one, with a force at the child's origin in the axes of the world.
+  void act_on_ball(const RobotJoint& joint) {
+    const bool free = joint.type == "floating";
+    // The length of a free joint is always zero, so that a stiffness has no effect.
+    if (law_.damping != 0.0 || law_.ratio > 0.0 || (law_.stiffness != 0.0 && !free))
+      return refuse(format("is a servo of {}, which has several coordinates", quote(joint.name)),
+                    "Use a motor, or add a bushing.");
+    if (!is_still(joint.parent))
+      return refuse(format("turns the ball {} between two bodies that move", quote(joint.name)),
+                    "Use hinges one after the other.");
+    const std::vector<double>& gear = of_->gear;
+    RobotPush push;
+    push.at = at_;
+    push.name = name_;
+    push.point = {joint.child, Vec3::Zero()};
+    push.signal = limited(law_.signal);
+    push.in_world = true;
+    if (free) push.force = Vec3(gear[0], gear[1], gear[2]);
+    const Vec3 moment = free ? Vec3(gear[3], gear[4], gear[5]) : Vec3(gear[0], gear[1], gear[2]);
+    if (of_->in_parent) push.moment = bodies_.frames().at(joint.parent).R * moment;
+    if (of_->in_parent || !push.force.isZero(0.0)) robot_.pushes.push_back(push);
+    if (of_->in_parent || moment.isZero(0.0)) return;
+    push.in_world = false;
+    push.force.setZero();
+    push.moment = moment;
     robot_.pushes.push_back(std::move(push));
   }
 
