@@ -155,6 +155,35 @@ TEST_F(FebMaterials, MixturesAddTheEnergiesOfTheirFibres) {
                 });
 }
 
+// Tension over the stretch l of fibres that straighten: l W' = c3 (exp(c4 (l - 1)) - 1), then a
+// line.
+TEST_F(FebMaterials, FibresThatStraightenHaveTheIntegralOfTheirTension) {
+  const double c3 = 2e3, c4 = 12.0, c5 = 3e4, last = 1.06;
+  const auto rate = [&](double l) {
+    const double toe = c3 * std::expm1(c4 * (std::min(l, last) - 1.0));
+    return (l < last ? toe : toe + c5 * (l - last)) / l;
+  };
+  const auto integral = [&](double from, double to) {  // Simpson's rule
+    const int n = 200;
+    const double h = (to - from) / n;
+    double sum = rate(from) + rate(to);
+    for (int k = 1; k < n; ++k) sum += (k % 2 == 1 ? 4.0 : 2.0) * rate(from + k * h);
+    return sum * h / 3.0;
+  };
+  const auto energy = [&](double I) {
+    const double l = std::sqrt(I);
+    if (l <= 1.0) return 0.0;
+    return integral(1.0, std::min(l, last)) + (l > last ? integral(last, l) : 0.0);
+  };
+  expect_energy("solid mixture",
+                std::string(kNeoHookean) +
+                    "<solid type='fiber-exp-linear'><c3>2e3</c3><c4>12</c4><c5>3e4</c5>"
+                    "<lambda>1.06</lambda><fiber type='vector'>2,2,1</fiber></solid>",
+                [&](const Mat3& F) {
+                  return neo_hookean(F) + energy(square_stretch(F, Vec3(2, 2, 1) / 3.0));
+                });
+}
+
 // Energies of parts of one family add up to a material of the model.
 TEST_F(FebMaterials, PartsOfOneFamilyAreOneMaterial) {
   const std::string soft = "<solid type='neo-Hookean'><E>3e3</E><v>0.1</v></solid>";

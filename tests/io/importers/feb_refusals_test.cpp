@@ -102,6 +102,18 @@ TEST_F(FebRefusals, WhatChangesTheForcesOfContactIsRefused) {
               HasSubstr("<penaltty> in <contact> is unknown"));
 }
 
+// Two million lines of elements, which are not read at all.
+TEST_F(FebRefusals, FilesOfTooManyElementsAreRefusedBeforeTheyAreRead) {
+  const std::string line = "<elem id='1234567'>1,2,3,4,5,6,7,8</elem>\n";
+  std::string lines;
+  lines.reserve(2'000'000 * line.size());
+  for (int k = 0; k < 2'000'000; ++k) lines += line;
+  const std::string said = refused(feb(
+      control("STATIC", 1, 1.0) + tag("Mesh", tag("Elements", lines, "type='hex8' name='part'"))));
+  EXPECT_THAT(said, HasSubstr("bytes, more than 67108864"));
+  EXPECT_LT(said.size(), 1000U);
+}
+
 TEST_F(FebRefusals, OptionsWithoutAMeaningAreErrors) {
   const std::string path = write("m.feb", cube(domain("part", "soft")));
   const auto message = [&](const char* option) -> std::string {
