@@ -155,7 +155,8 @@ TEST_F(FebContactCli, TwoCubesPressEachOther) {
 
 // Without the band: nodes that are tied are bonded.
 TEST_F(FebContactCli, ATieToARigidBodyIsExact) {
-  for (const std::string type : {"tied-elastic", "tied-facet-on-facet", "sticky"})
+  for (const std::string type :
+       {"tied-elastic", "tied-facet-on-facet", "tied-node-on-facet", "sticky"})
     EXPECT_NEAR(reaction(press(true, 0, contact(type))), force(0.9), 1e-6) << type;
 }
 
