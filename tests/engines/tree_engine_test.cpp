@@ -51,6 +51,15 @@ class Mechanism {
     model_.joints.push_back(j);
   }
 
+  /// Gives the last joint a constant friction, and stops if it has one coordinate, near both of
+  /// which it starts.
+  void resist() {
+    JointSpec& j = model_.joints.back();
+    j.friction = JointFrictionSpec{.constant = 0.3};
+    if (j.type == "revolute" || j.type == "prismatic")
+      j.limits = JointLimitsSpec{.lower = -0.04, .upper = 0.05, .band = 0.045};
+  }
+
   void spring(int a, int b) {
     LoadSpec l;
     l.name = "s" + std::to_string(model_.loads.size());
@@ -204,6 +213,35 @@ TEST(TreeEngine, SolvesSpringsBetweenNeighboursDistantBodiesAndGround) {
     m.torsion("j0");
     expect_same_motion(m.model(), rho_inf);
   }
+}
+
+// Stops and friction that do not depend on reactions act beside the rows of joints in the tree, and
+// of a joint that closes a loop.
+TEST(TreeEngine, SolvesStopsAndConstantFrictionOfJoints) {
+  for (double rho_inf : {1.0, 0.5, 0.0})
+    for (const char* root : {"revolute", "prismatic"}) {
+      Mechanism m(83);
+      std::vector<int> b;
+      for (int i = 0; i < 5; ++i) b.push_back(m.body());
+      m.joint(root, kGround, b[0]);
+      m.resist();
+      int from = b[0];
+      for (const char* kind : {"revolute", "prismatic", "cylindrical", "universal"}) {
+        const int to = b[static_cast<std::size_t>(from) + 1];
+        m.joint(kind, from, to);
+        m.resist();
+        from = to;
+      }
+      const System tree = build_system(m.model());
+      EXPECT_TRUE(TreeEngine(tree).plan().loops.empty());
+      expect_same_motion(m.model(), rho_inf);
+      const int last = m.body();
+      m.joint("spherical", b[2], last);
+      m.resist();
+      m.joint("revolute", last, b[4]);
+      m.resist();
+      expect_same_motion(m.model(), rho_inf);
+    }
 }
 
 TEST(TreeEngine, SolvesManyOverlappingLoops) {

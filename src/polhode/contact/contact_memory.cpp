@@ -38,7 +38,8 @@ struct ImpulseRecord {
 /// A point that is a row.
 struct RowRecord {
   ImpulseRecord impulses;
-  double closed, slips, kept;
+  double closed, slips, kept, pressed, held;
+  double point[3], normal[3];
 };
 
 /// The record behind others.
@@ -56,6 +57,14 @@ PairRecord record_of(int a, int b, const FeaturePair& f) {
 FeaturePair pair_of(const PairRecord& r) {
   return {static_cast<GapKind>(static_cast<int>(r.kind)), static_cast<int>(r.i),
           static_cast<int>(r.j)};
+}
+
+RowRecord row_of(const ImpulseRecord& impulses, const PointHistory& h) {
+  RowRecord row{impulses, h.closed ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, h.kept, h.pressed, h.held, {},
+                {}};
+  set(row.point, h.point);
+  set(row.normal, h.normal);
+  return row;
 }
 
 }  // namespace
@@ -82,7 +91,7 @@ void ContactSet::save(State& state) {
       set(record.impulse, h.impulse);
       set(record.turning, h.turning);
       if (acts_by_rows())
-        append(out, RowRecord{record, h.closed ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, h.kept});
+        append(out, row_of(record, h));
       else
         append(out, record);
       continue;
@@ -189,6 +198,10 @@ void ContactSet::load(const State& state) {
         h.closed = row.closed != 0.0;
         h.slips = row.slips != 0.0;
         h.kept = row.kept;
+        h.pressed = row.pressed;
+        h.held = row.held;
+        h.point = Vec3(row.point);
+        h.normal = Vec3(row.normal);
       }
       points_.push_back(p);
       continue;
@@ -211,6 +224,31 @@ void ContactSet::load(const State& state) {
     h.gap = record.gap;
     points_.push_back(p);
   }
+}
+
+std::vector<ClosedRow> ContactSet::closed_rows(const State& state) const {
+  std::vector<ClosedRow> rows;
+  const std::vector<double>& in = state.contacts;
+  if (!acts_by_rows() || in.empty()) return rows;
+  const std::size_t first = 2 + static_cast<std::size_t>(in[0]) + switches_.size() +
+                            kNumbersOf<ReferenceRecord> * references_.size();
+  for (std::size_t at = first; at + kNumbersOf<RowRecord> <= in.size();
+       at += kNumbersOf<RowRecord>) {
+    const auto row = read_record<RowRecord>(in.data() + at);
+    if (row.closed == 0.0 || !(row.pressed > 0.0)) continue;
+    const PairRecord& pair = row.impulses.pair;
+    const auto body = [&](double shape) { return shapes_[static_cast<std::size_t>(shape)].body; };
+    rows.push_back({.features = {pair.a, pair.b, pair.kind, pair.i, pair.j},
+                    .bodies = {body(pair.a), body(pair.b)},
+                    .point = Vec3(row.point),
+                    .normal = Vec3(row.normal),
+                    .impulse = Vec3(row.impulses.impulse),
+                    .turning = Vec3(row.impulses.turning),
+                    .pressed = row.pressed,
+                    .held = row.held,
+                    .slips = row.slips != 0.0});
+  }
+  return rows;
 }
 
 void ContactSet::keep_totals(State& state, const std::vector<double>& totals) {

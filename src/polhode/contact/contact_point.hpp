@@ -28,7 +28,7 @@ struct FrictionLaw {
 /// State of a contact point that is carried from step to step.
 struct PointHistory {
   Vec3 bristle = Vec3::Zero();  ///< World, in the tangent plane [m].
-  Vec3 normal = Vec3::Zero();   ///< Of the step that left the bristles; zero: no step yet.
+  Vec3 normal = Vec3::Zero();   ///< Of the step that left the bristles, or of a row; zero: no step.
   Vec3 rolling = Vec3::Zero();  ///< World, in the tangent plane [rad].
   double torsion = 0.0;         ///< [rad]
   double approach = 0.0;        ///< w_pre: normal velocity at closing [m/s], negative.
@@ -43,7 +43,10 @@ struct PointHistory {
   Vec3 impulse = Vec3::Zero();
   Vec3 turning = Vec3::Zero();  ///< Likewise, of rolling and torsional friction [N m s].
   double kept = 0.0;            ///< Of a row: gap at the start of the run, if negative [m].
-  bool closed = false;          ///< The gap was within the activation distance at t_n.
+  Vec3 point = Vec3::Zero();    ///< Of a row [m].
+  double pressed = 0.0;         ///< Of a row: normal part of the impulse [N s].
+  double held = 0.0;    ///< Of a row: friction, as a part of that under which it sticks [-].
+  bool closed = false;  ///< The gap was within the activation distance at t_n.
   ContactPhase phase = ContactPhase::rest;
   bool slips = false;
 

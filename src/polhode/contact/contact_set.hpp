@@ -159,6 +159,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
                  std::vector<ContactInstant>& list) const override;
   [[nodiscard]] double part_on_one_side(std::span<const BodyStep> instants,
                                         std::span<const Vec6> increments) const override;
+  [[nodiscard]] std::vector<ClosedRow> closed_rows(const State& state) const override;
   Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const ImpulsePoint> list, std::span<const ImpulseLoss> losses,
                        const ImpulseSearch& search) override;

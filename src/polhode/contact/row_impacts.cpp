@@ -122,6 +122,12 @@ void ContactSet::close_rows(State& state, std::span<const ResolvedImpact> impact
       h.closed = h.closed && touches(p);
       h.slips = h.closed && p.report.after.slips;
     }
+    h.point = p.report.point;
+    h.normal = p.report.normal;
+    h.pressed = std::abs(step_length_) * p.report.normal_force;
+    const FrictionLaw& law = p.data.friction;
+    const double most = std::max(law.mu, law.mu_static) * p.report.normal_force;
+    h.held = most > 0.0 ? p.report.friction_force.norm() / most : 0.0;
     p.report.after.closed = h.closed;
     p.report.after.slips = h.slips;
   }

@@ -14,12 +14,19 @@ namespace {
 /// engine's rows.
 constexpr double kProximalOfLoops = 1e-11;
 
-/// Interactions evaluated one by one.
-std::vector<int> not_in_lanes(const TreeLoopPlan& plan) {
+/// Interactions evaluated one by one: those of the tree, or outside it.
+std::vector<int> not_in_lanes(const System& system, const TreeLoopPlan& plan, bool in_tree) {
   std::vector<int> list;
   for (const OffTreeInteraction& x : plan.extras)
-    if (!x.in_lanes) list.push_back(x.interaction);
+    if (!x.in_lanes && (system.tree().in_tree[x.interaction] != 0) == in_tree)
+      list.push_back(x.interaction);
   return list;
+}
+
+/// Whether an interaction exerts no force, nor would by a small motion.
+bool is_zero(const PairTerms& t) {
+  return t.wrench_a.isZero(0.0) && t.wrench_b.isZero(0.0) && t.D_aa.isZero(0.0) &&
+         t.D_bb.isZero(0.0);
 }
 
 template <class T>
@@ -69,7 +76,8 @@ TreeEngine::TreeEngine(const System& system, const std::string& isa)
     : system_(&system),
       kernels_(&lane_kernels(isa)),
       plan_(plan_tree_loops(system)),
-      sweep_(system, not_in_lanes(plan_)),
+      sweep_(system, not_in_lanes(system, plan_, false)),
+      beside_rows_(system, not_in_lanes(system, plan_, true)),
       mass_(mass_blocks(system)) {
   lay_out();
   lay_out_loop_joints();
@@ -267,12 +275,17 @@ void TreeEngine::evaluate_extras(const State& state, const Trial& trial) {
   for (ExtraRows& e : extra_rows_) std::memset(e.A, 0, sizeof e.A);
   for (EdgeRows& e : edge_rows_) std::memset(static_cast<void*>(&e), 0, sizeof e);
   if (!S_.empty()) std::memset(S_.data(), 0, S_.size() * sizeof(LaneData));
-  if (sweep_.empty()) return;
+  if (touched_.empty()) return;
   take_steps(state, trial, view_.first_iteration != 0);
   sweep_.run(steps_, trial.context, trial.lambda.data(), state.history.data(),
              [&](int interaction, const PairStep&, const PairTerms& terms) {
                add_extra(plan_.extras[extra_index_[interaction]], terms, trial);
              });
+  beside_rows_.run(steps_, trial.context, nullptr, state.history.data(),
+                   [&](int interaction, const PairStep&, const PairTerms& terms) {
+                     if (is_zero(terms)) return;  // away from all stops
+                     add_extra(plan_.extras[extra_index_[interaction]], terms, trial);
+                   });
 }
 
 Iteration TreeEngine::iterate(const State& state, Trial& trial, bool /*refactor*/, double damping) {

@@ -71,9 +71,10 @@ class TreeEngine final : public NewtonEngine {
   const System* system_;
   const LaneKernels* kernels_;
   TreeLoopPlan plan_;
-  InteractionSweep sweep_;       ///< Of interactions outside both the tree and LoopJoints.
-  std::vector<BodyStep> steps_;  ///< By body, the ground last; only where needed.
-  std::vector<int> touched_;     ///< Bodies of those.
+  InteractionSweep sweep_;        ///< Of interactions outside both the tree and LoopJoints.
+  InteractionSweep beside_rows_;  ///< Of joints of the tree that act beside their rows.
+  std::vector<BodyStep> steps_;   ///< By body, the ground last; only where needed.
+  std::vector<int> touched_;      ///< Bodies of those.
   /// Multipliers of direction rows by a loop joint's couple.
   struct Couple {
     Mat3 dual, by_a, by_b;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include <polhode/engines/tree_loops.hpp>
+#include <polhode/equations/newton_system.hpp>
 
 namespace polhode {
 
@@ -28,7 +29,10 @@ class Planner {
     at_common_.resize(tree_.slots);
     const auto& refs = system_.interactions();
     for (int i = 0; i < static_cast<int>(refs.size()); ++i)
-      if (!tree_.in_tree[i]) add(i, refs[i]);
+      if (!tree_.in_tree[i])
+        add(i, refs[i], refs[i].rows);
+      else if (acts_beside_rows(system_, i))
+        add(i, refs[i], 0);
     trace_loops();
     order_loops();
     write_lists();
@@ -39,12 +43,13 @@ class Planner {
  private:
   [[nodiscard]] int slot(int body) const { return body == kGround ? -1 : tree_.slot_of_body[body]; }
 
-  void add(int interaction, const InteractionRef& ref) {
+  /// @param rows  Of the interaction; 0 if elimination along the tree contains them.
+  void add(int interaction, const InteractionRef& ref, int rows) {
     OffTreeInteraction x;
     x.interaction = interaction;
     x.slot_a = slot(ref.a);
     x.slot_b = slot(ref.b);
-    x.rows = ref.rows;
+    x.rows = rows;
     for (int s : {x.slot_a, x.slot_b})
       if (s >= 0 && plan_.extra_of_slot[s] < 0) plan_.extra_of_slot[s] = plan_.extra_count++;
     int unknowns = ref.further_part ? 0 : x.rows;
@@ -71,7 +76,7 @@ class Planner {
       }
     }
     if (const auto basis = system_.group(ref.group).describe(ref.item).motion_basis)
-      x.in_lanes = basis->coincident && x.edge < 0;
+      x.in_lanes = basis->coincident && x.edge < 0 && !system_.traits(ref).works;
     if (unknowns > 0) x.loop = add_loop(unknowns);
     if (ref.further_part) x.loop = plan_.extras.back().loop;
     if (x.coupling == Coupling::all) x.coupling_loop = ref.shares_row() ? add_loop(12) : x.loop;

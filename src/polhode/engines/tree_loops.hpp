@@ -10,7 +10,8 @@
 
 namespace polhode {
 
-/// An interaction outside the tree: loop joint, spring, load.
+/// An interaction outside the tree: loop joint, spring, load; or what a joint of the tree exerts
+/// beside its rows.
 struct OffTreeInteraction {
   int interaction = -1;
   int slot_a = -1, slot_b = -1;  ///< −1: the ground.

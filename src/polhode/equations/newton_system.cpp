@@ -40,6 +40,11 @@ std::vector<int> all_interactions(const System& system) {
 
 }  // namespace
 
+bool acts_beside_rows(const System& system, int interaction) {
+  return system.tree().in_tree[interaction] != 0 &&
+         system.traits(system.interactions()[interaction]).works;
+}
+
 InteractionSweep::InteractionSweep(const System& system)
     : InteractionSweep(system, all_interactions(system)) {}
 
@@ -73,8 +78,8 @@ void InteractionSweep::evaluate(const Batch& batch, std::span<const BodyStep> st
   for (int k = 0; k < batch.count; ++k) {
     const InteractionRef& ref = system_->interactions()[interactions_[batch.first + k]];
     items_.push_back(ref.item);
-    pair_steps_.push_back({step_of(ref.a), step_of(ref.b), context, lambda + ref.first_row,
-                           history + ref.first_history});
+    pair_steps_.push_back({step_of(ref.a), step_of(ref.b), context,
+                           lambda ? lambda + ref.first_row : nullptr, history + ref.first_history});
   }
   system_->group(batch.group).evaluate(items_, pair_steps_, std::span(terms_).first(items_.size()));
   if (batch.has_parts) gather_parts(batch);

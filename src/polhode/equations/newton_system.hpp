@@ -24,6 +24,11 @@ struct KktMap {
 };
 [[nodiscard]] KktMap kkt_map(const System& system);
 
+/// Whether a joint of the tree exerts forces besides those of its multipliers, which elimination
+/// along the tree does not contain: stops, and friction that does not depend on the reaction. These
+/// alone are the terms of a step without multipliers.
+[[nodiscard]] bool acts_beside_rows(const System& system, int interaction);
+
 /// Batched evaluation of interactions, one virtual call per batch of one group, whose terms are
 /// passed to a visitor. It owns the only buffers needed and allocates once.
 ///
@@ -37,6 +42,7 @@ class InteractionSweep {
 
   [[nodiscard]] bool empty() const { return interactions_.empty(); }
   /// @param steps  By body, the ground last.
+  /// @param lambda  Null for joints whose acts_beside_rows() is true.
   /// @param visit  visit(int interaction, const PairStep&, const PairTerms&).
   /// @param rows_only  Skip batches without multiplier rows.
   template <class Visit>

@@ -62,7 +62,15 @@ class Search {
     const double most = start.size() > 0 ? problem.A.diagonal().maxCoeff() : 0.0;
     for (const ImpulseRows& block : problem.blocks) {
       const double d = mobility(block);
-      if (d > kHeld * most) d_.segment(block.first, block.size).setConstant(d);
+      if (!(d > kHeld * most)) continue;
+      // The projection along a ray is the nearest point of an ellipse in the metric in which that
+      // is a circle: there the velocity is against the impulse, and normal to the ellipse here.
+      const auto axes = block.half_axes.head(block.size);
+      const bool round = block.kind != Kind::friction || !(axes.minCoeff() > 0.0);
+      for (Index k = 0; k < block.size; ++k) {
+        const double part = round ? 1.0 : axes.maxCoeff() / axes[k];
+        d_[block.first + k] = part * part * d;
+      }
     }
     weight_ = d_;
     if (problem.even)
@@ -122,18 +130,20 @@ class Search {
       if (block.kind == Kind::friction && d_[block.first] > 0.0) friction(block, y, D, F, J);
   }
 
-  /// The bound is that on the ray through the impulses.
+  /// Friction by its projection onto the cone along a ray.
   void friction(const ImpulseRows& block, const Vec& y, const Rows& D, Vec& F, Rows* J) const {
     const Index t = block.first, k = block.size, n = block.normal;
     const auto axes = block.half_axes.head(k);
     F.segment(t, k) = problem_.given.segment(t, k) + p_.segment(t, k);
     const double bound = bound_of(block, pressed_);
     if (bound == 0.0) return;
-    const Few z = F.segment(t, k) - y.segment(t, k) / d_[t];
+    const Few d = d_.segment(t, k);
+    const auto over_d = [&] { return (D.middleRows(t, k).array().colwise() / d.array()).matrix(); };
+    const Few z = F.segment(t, k) - y.segment(t, k).cwiseQuotient(d);
     const double size = z.cwiseQuotient(axes).norm();
     if (size <= bound) {
-      F.segment(t, k) = y.segment(t, k) / d_[t];
-      if (J) J->middleRows(t, k) = D.middleRows(t, k) / d_[t];
+      F.segment(t, k) = y.segment(t, k).cwiseQuotient(d);
+      if (J) J->middleRows(t, k) = over_d();
       return;
     }
     F.segment(t, k) -= bound / size * z;
@@ -141,7 +151,7 @@ class Search {
     const Few weighted = z.cwiseQuotient(axes).cwiseQuotient(axes);
     FewByFew turn = -bound / (size * size * size) * z * weighted.transpose();
     turn.diagonal().array() += bound / size;
-    J->middleRows(t, k) += turn * D.middleRows(t, k) / d_[t];
+    J->middleRows(t, k) += turn * over_d();
     J->block(t, t, k, k) -= turn;
     if (n < 0 || d_[n] == 0.0 || !(pressed_[n] > 0.0)) return;
     J->middleRows(t, k) += z / size * (D.row(n) / d_[n]);
@@ -290,7 +300,8 @@ class Search {
           change(i, block.kind == Kind::equality ? z : std::max(0.0, z));
           continue;
         }
-        Few z = total.segment(i, block.size) - y.segment(i, block.size) / d_[i];
+        Few z = total.segment(i, block.size) -
+                y.segment(i, block.size).cwiseQuotient(d_.segment(i, block.size));
         const double bound = bound_of(block, total);
         const double size =
             bound > 0.0 ? z.cwiseQuotient(block.half_axes.head(block.size)).norm() : kEndless;

@@ -14,7 +14,8 @@ struct ImpulseRows {
     equality,  ///< y = 0, one row: of a joint.
     normal,    ///< 0 ≤ p ⊥ y ≥ 0, one row: of a contact point or a stop.
     /// One to three rows of a friction cone: |p| at most its bound; y = 0 inside the cone, y
-    /// against p on it. Coulomb friction and rolling have two rows, torsion has one.
+    /// against its outward normal on it: most dissipation. Coulomb friction and rolling have two
+    /// rows, torsion has one.
     friction
   };
   Kind kind = Kind::normal;
@@ -40,7 +41,8 @@ struct RowReport {
 /// impulses that act already: bounds hold for their sums. @eq{row-problem}
 ///
 /// Newton's method solves the natural map F = p − proj(p − y/d) = 0 of the sums, with d_i = A_ii of
-/// a row and the largest eigenvalue of the block of friction. Impulses of rows that share a load
+/// a row and the largest eigenvalue of the block of friction, of an elliptic cone times (μ/μ_i)²
+/// with its larger half axis μ. Impulses of rows that share a load
 /// are unique by proximal iterations: the solution is the nearest one to the initial impulses,
 /// whatever the order of the rows. (P. Alart and A. Curnier, Comput. Methods Appl. Mech. Engrg. 92,
 /// 1991, 353-375; R. T. Rockafellar, SIAM J. Control Optim. 14, 1976, 877-898.)

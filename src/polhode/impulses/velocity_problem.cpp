@@ -36,6 +36,7 @@ class Course {
   explicit Course(const VelocityProblem& problem)
       : problem_(problem), w_(problem.w), impulses_(Vec::Zero(problem.w.size())) {
     result_.report.converged = true;
+    result_.work = impulses_;
   }
 
   void before_impact();
@@ -68,16 +69,20 @@ class Course {
   };
   [[nodiscard]] Part part(const Vec& targets, double carried, const Vec& guess);
   void take(const Part& part) {
+    result_.work += 0.5 * part.p.cwiseProduct(w_ + part.w);
     w_ = part.w;
     impulses_ += part.p;
     work_ += part.work;
   }
   void apply(const std::vector<Index>& rows, const Vec& p) {
+    const Vec before = w_;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const double impulse = p[static_cast<Index>(k)];
       impulses_[rows[k]] += impulse;
       w_ += impulse * problem_.A.col(rows[k]);
     }
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      result_.work[rows[k]] += 0.5 * p[static_cast<Index>(k)] * (before[rows[k]] + w_[rows[k]]);
   }
   [[nodiscard]] std::vector<Index> held() const;
   /// Row problem of these velocities, with the bounds of all friction.
@@ -329,7 +334,9 @@ void Course::stop_slip() {
   for (const ContactRows& c : problem_.contacts) problem.given[c.normal] = c.impulse;
   Vec p = Vec::Zero(w_.size());
   result_.report = problem.solve(p, problem_.rounding);
-  w_ += problem_.A * p;
+  const Vec change = problem_.A * p;
+  result_.work += p.cwiseProduct(w_ + 0.5 * change);
+  w_ += change;
   impulses_ += p;
 }
 

@@ -56,6 +56,7 @@ struct VelocityProblem {
 
   struct Result {
     Vec impulses;      ///< Change the velocities of the step to those after the impact [N s].
+    Vec work;          ///< Of each row's impulses on the bodies, along the course [J].
     RowReport report;  ///< Worst of all row problems.
     std::vector<char> closed;  ///< By contact: in contact from now on.
     std::vector<char> sticks;  ///< Likewise: with zero slip.

@@ -9,8 +9,7 @@ namespace polhode {
 
 namespace {
 
-/// Derivative of g of EqualTurns by a twist of aligned shafts: x_a·y_b and −y_a·x_b both increase
-/// by it.
+/// Derivative of g of EqualTurns by a twist about the mean shaft: −4z, the sine of half of it.
 constexpr double kEqualTurnsByTwist = 2.0;
 /// Largest ratio of stiffnesses of augmented joints: ε times it must stay small compared with the
 /// masses.
@@ -19,7 +18,8 @@ constexpr double kMaxWeight = 1e6;
 /// Derivative of the part's rows by the rotation that they measure; 0 for displacements.
 template <class Part>
 constexpr double by_rotation() {
-  return std::is_same_v<Part, EqualTurns>       ? kEqualTurnsByTwist
+  return std::is_same_v<Part, EqualTurns> || std::is_same_v<Part, EqualTurnsSprings>
+             ? kEqualTurnsByTwist
          : std::is_same_v<Part, OrthogonalAxes> ? 1.0
                                                 : 0.0;
 }
@@ -53,6 +53,10 @@ void Joint::set_enforcement(const JointEnforcement& e, double stiffest) {
   if (rows_ == 0)
     throw InputError("type", format("a {} has no constraint but its limits", type_),
                      "Leave the enforcement out");
+  if (e.law == JointEnforcement::Law::penalty) {
+    parts_.turn_springs = parts_.equal_turns;
+    rows_ = parts_.rows();
+  }
   const Vec6 compliance = row_compliances(parts_, e);
   if (e.law == JointEnforcement::Law::penalty) {
     held_by_ = std::make_shared<const Held>(Held{compliance, Vec6::Ones()});

@@ -105,9 +105,14 @@ void Joint::arrange(const PairStep& step, Configuration& q_alpha, Configuration&
     q_n1.R_b = R_b.at_n1;
   }
   if (motion_) move_frame(*motion_, frames_, step, q_alpha, q_n1);
+  q_alpha.bend = q_n1.bend = bend(step);
 }
 
 void Joint::evaluate(const PairStep& step, PairTerms& t) const {
+  if (!step.lambda) {  // only what acts beside the rows
+    with_view(step, [&](const Resistance::View& view) { resistance_->add(view, t); });
+    return clear_ground_sides(step, t);
+  }
   Configuration q_alpha, q_n1;
   arrange(step, q_alpha, q_n1);
   const PairRows G{t.G_a.data(), t.G_b.data()}, B{t.B_a.data(), t.B_b.data()};
@@ -161,8 +166,10 @@ void Joint::unilateral_rows(const PairStep& step, std::vector<UnilateralRow>& li
 }
 
 void Joint::pieces(const PairStep& step, ForcePieces& pieces) const {
-  if (resistance_)
+  if (piecewise())
     with_view(step, [&](const Resistance::View& view) { resistance_->pieces(view, pieces); });
+  else if (resistance_)
+    resistance_->stop_pieces(step.history + angles(), pieces);
 }
 
 Work Joint::work(const PairStep& step) const {
@@ -274,6 +281,23 @@ auto Joint::with_sides(const PairStep& step, With&& with) const {
   return reversed_ ? with(step.b, step.a) : with(step.a, step.b);
 }
 
+/// Before the start, when there is no history yet, of the present position.
+Vec3 Joint::bend(const PairStep& step) const {
+  if (!parts_.equal_turns) return Vec3::UnitX();
+  const Vec3 before(step.history + bend());
+  if (!before.isZero(0.0)) return before;
+  return with_sides(
+      step, [&](const BodyStep& a, const BodyStep& b) { return bend_of(relative_turn(a, b)); });
+}
+
+/// Rotation of the joint frame on b relative to that on a, at t_{n+1}.
+Mat3 Joint::relative_turn(const BodyStep& a, const BodyStep& b) const {
+  return (a.Lambda_n1 * user_frames_.R_a).transpose() * (b.Lambda_n1 * user_frames_.R_b);
+}
+
+/// Least length of bend_along in a step; 4 without bend, and 1 after 151 degrees of it.
+constexpr double kLeastBend = 1.0;
+
 bool Joint::acceptable(const PairStep& step) const {
   if (motion_ && is_driven_half_a_turn(*motion_, step.context)) return false;
   JointFrames own;
@@ -281,15 +305,7 @@ bool Joint::acceptable(const PairStep& step) const {
   // Parallel axes, enforced by right angles, could also be antiparallel: the rows do not
   // distinguish them.
   return with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
-    if (parts_.equal_turns) {
-      // A rotation by half a turn about any axis normal to z satisfies the row as well.
-      const Mat3 of_a_n = a.Lambda_n * user_frames_.R_a, of_b_n = b.Lambda_n * user_frames_.R_b;
-      const Mat3 of_a = a.Lambda_n1 * user_frames_.R_a, of_b = b.Lambda_n1 * user_frames_.R_b;
-      const auto turned = [](const Mat3& x, const Mat3& y) {
-        return x.col(kX).dot(y.col(kX)) + x.col(kY).dot(y.col(kY)) > 0.0;
-      };
-      return turned(of_a_n, of_b_n) == turned(of_a, of_b);
-    }
+    if (parts_.equal_turns) return bend_along(relative_turn(a, b), bend(step)).norm() > kLeastBend;
     const auto same_side = [&](int axis) {
       const Carried on_a = a.vector(user_frames_.R_a.col(axis));
       const Carried on_b = b.vector(R_b.col(axis));
@@ -300,9 +316,11 @@ bool Joint::acceptable(const PairStep& step) const {
 }
 
 std::optional<MotionBasis> Joint::motion_basis() const {
-  // Friction depends on the multipliers, moving frames do work, and springs deflect: the tree,
-  // which eliminates multipliers, treats such joints as loops.
-  if (resistance_ || motion_ || held_by_ || rows_ < 3 || parts_.distance || parts_.equal_turns)
+  // Friction may depend on the multipliers, moving frames do work, and springs deflect: the tree,
+  // which eliminates multipliers, treats such joints as loops. Other friction, and stops, act
+  // beside the rows.
+  const bool rubs = resistance_ && (resistance_->rubs_by_reaction() || resistance_->rows() > 0);
+  if (rubs || motion_ || held_by_ || rows_ < 3 || parts_.distance || parts_.equal_turns)
     return std::nullopt;
   MotionBasis m;
   m.coincident = parts_.coincident;
@@ -318,7 +336,7 @@ std::optional<MotionBasis> Joint::motion_basis() const {
 }
 
 bool Joint::reversible() const {
-  if (!motion_basis()) return false;
+  if (!motion_basis() || resistance_) return false;
   if (parts_.coincident || parts_.axes == 3) return true;
   if (parts_.axes != 2) return false;
   // The planes' normals rotate with a: fixed to b they are the same planes only if they are normal
@@ -351,6 +369,9 @@ void Joint::initialize(const PairStep& step, double* history) const {
   if (resistance_) resistance_->initialize(history + angles());
   if (motion_) history[angles()] = 0.0;
   if (records_) std::fill_n(history + record(), kRecordSize, 0.0);
+  if (parts_.equal_turns)
+    Eigen::Map<Vec3>(history + bend()) = with_sides(
+        step, [&](const BodyStep& a, const BodyStep& b) { return bend_of(relative_turn(a, b)); });
 }
 
 void Joint::commit(const PairStep& step, double* history) const {
@@ -379,6 +400,8 @@ void Joint::commit(const PairStep& step, double* history) const {
 void Joint::count_turns(const PairStep& step, double* history) const {
   with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
     for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(a, b, step.history[i]);
+    if (parts_.equal_turns)
+      Eigen::Map<Vec3>(history + bend()) = bend_towards(relative_turn(a, b), bend(step));
   });
 }
 

@@ -81,7 +81,7 @@ class Joint : public InteractionItem {
 
   // Functions of an interaction item.
   [[nodiscard]] int rows() const { return rows_; }
-  [[nodiscard]] int history_size() const { return record() + (records_ ? kRecordSize : 0); }
+  [[nodiscard]] int history_size() const { return bend() + (parts_.equal_turns ? kBendSize : 0); }
   [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_ && !records_; }
   [[nodiscard]] bool conservative() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
@@ -176,6 +176,11 @@ class Joint : public InteractionItem {
   /// Offset of the impulses in the history.
   static constexpr int kRecordSize = 6;
   [[nodiscard]] int record() const { return anchor() + (anchors() ? kAnchorSize : 0); }
+  /// Offset in the history of (w, x, y) of the relative quaternion of equal turns, which continues
+  /// through every position and so fixes the sign of the row.
+  static constexpr int kBendSize = 3;
+  [[nodiscard]] int bend() const { return record() + (records_ ? kRecordSize : 0); }
+  [[nodiscard]] Vec3 bend(const PairStep& step) const;
   /// Frames valid in this step. @param own  Storage for them.
   [[nodiscard]] const JointFrames& held_frames(const PairStep& step, JointFrames& own) const;
   void count_turns(const PairStep& step, double* history) const;
@@ -205,6 +210,7 @@ class Joint : public InteractionItem {
   /// Calls what(view) with the data that the resistance needs.
   template <class What>
   auto with_view(const PairStep& step, What&& what) const;
+  [[nodiscard]] Mat3 relative_turn(const BodyStep& a, const BodyStep& b) const;
   [[nodiscard]] JointCoordinates coordinates(const BodyStep& a, const BodyStep& b,
                                              const double* history) const;
 

@@ -29,6 +29,7 @@ Configuration Joint::at_n1(const PairStep& step) const {
     Configuration unused = q;
     move_frame(*motion_, frames_, step, unused, q);
   }
+  q.bend = bend(step);
   return q;
 }
 
@@ -50,6 +51,7 @@ Configuration Joint::at_n(const PairStep& step) const {
   q.u = (b.r_n - a.r_n) + (q.z_b - q.z_a);
   q.R_a = a.Lambda_n * R_a;
   q.R_b = b.Lambda_n * frames.R_b;
+  q.bend = bend(step);
   return q;
 }
 

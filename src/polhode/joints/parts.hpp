@@ -17,6 +17,7 @@ namespace polhode {
 struct JointParts {
   bool coincident = false;
   bool equal_turns = false;
+  bool turn_springs = false;  ///< Springs hold the equal turns.
   std::optional<Distance> distance;
   int planes = 0, axes = 0;
   std::array<PointInPlane, 2> plane{};
@@ -29,7 +30,8 @@ struct JointParts {
   void add(const OrthogonalAxes& p) { pair.at(static_cast<std::size_t>(axes++)) = p; }
 
   [[nodiscard]] int rows() const {
-    return (coincident ? 3 : planes) + (distance ? 1 : 0) + (equal_turns ? 1 : axes);
+    return (coincident ? 3 : planes) + (distance ? 1 : 0) +
+           (equal_turns ? (turn_springs ? 3 : 1) : axes);
   }
   /// Whether joint axes of both sides are needed.
   [[nodiscard]] bool turns() const { return axes > 0 || equal_turns; }
@@ -45,7 +47,8 @@ struct JointParts {
     if (coincident) visit(CoincidentPoints{});
     for (int i = 0; i < planes; ++i) visit(plane[static_cast<std::size_t>(i)]);
     if (distance) visit(*distance);
-    if (equal_turns) visit(EqualTurns{});
+    if (equal_turns && turn_springs) visit(EqualTurnsSprings{});
+    if (equal_turns && !turn_springs) visit(EqualTurns{});
     for (int i = 0; i < axes; ++i) visit(pair[static_cast<std::size_t>(i)]);
   }
 };

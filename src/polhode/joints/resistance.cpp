@@ -87,7 +87,28 @@ std::optional<Resistance::Kind> Resistance::kind_of(const std::string& type) {
   return std::nullopt;
 }
 
-Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, const Coordinate& c,
+Resistance::Place Resistance::place(const View& v, bool slides) const {
+  if (!slides) return {v.angle_n[0], v.angle[0].at_n1(v.step.a, v.step.b, v.angle_n[0])};
+  if (kind_ == Kind::link) {
+    const LinkLength length(v.q_n, v.q_n1);
+    return {length.at_n, length.at_n1};
+  }
+  return {axes_at(v.q_n).col(kZ).dot(v.q_n.u), axes_at(v.q_n1).col(kZ).dot(v.q_n1.u)};
+}
+
+bool Resistance::idle(const View& v) const {
+  if (data_.friction || rows() > 0 || is_load_step(v.step.context)) return false;
+  bool idle = true;
+  for_limits([&](const JointLimits& limits, bool slides, int memory) {
+    if (!idle) return;
+    const Place x = place(v, slides);
+    idle = read_record<StopMemory>(v.memory + memory).side == 0.0 && limits.within(x.at_n) &&
+           limits.within(x.at_n1);
+  });
+  return idle;
+}
+
+Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, const Place& c,
                          int memory) const {
   CoordinateStep step{.at_n = c.at_n, .at_n1 = c.at_n1, .dt = v.step.context.dt};
   if (step.dt != 0.0) {
@@ -149,8 +170,7 @@ Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
     m.slide = m.count;
     Coordinate& c = add();
     const PointInPlane along{kZ};
-    c.at_n = axes_at(v.q_n).col(kZ).dot(v.q_n.u);
-    c.at_n1 = axes_at(v.q_n1).col(kZ).dot(v.q_n1.u);
+    static_cast<Place&>(c) = place(v, true);
     along.gradient(v.q_alpha, 0, PairRows{c.on_a.data(), c.on_b.data()});
     if (tangents) along.gradient(v.q_n1, 0, PairRows{c.by_a.data(), c.by_b.data()});
   }
@@ -326,6 +346,7 @@ Resistance::Bristle Resistance::left_bristle(const View& v, const Motion& m) con
 }
 
 void Resistance::add(const View& v, PairTerms& t) const {
+  if (idle(v)) return;
   const PairStep& step = v.step;
   const bool tangents = step.context.tangents;
   const double alpha_f = step.a.alpha_f;
@@ -388,6 +409,7 @@ void Resistance::add(const View& v, PairTerms& t) const {
 
 Work Resistance::work(const View& v) const {
   Work w;
+  if (idle(v)) return w;
   const Motion m = motion(v, false);
   const StepContext& context = v.step.context;
   if (data_.friction) {
@@ -416,13 +438,12 @@ Work Resistance::work(const View& v) const {
 
 double Resistance::clearance(const View& v) const {
   double least = std::numeric_limits<double>::infinity();
-  const Motion m = motion(v, false);
   for_limits([&](const JointLimits& limits, bool slides, int memory) {
-    const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], memory);
+    const Place c = place(v, slides);
+    const Stop stop = stop_of(v, limits, slides, c, memory);
     const contact::NormalLaw& law = stop.law();
     least = std::min(least, (stop.gap_n1() - law.floor()) / law.band());
-    const double x = m.of[slides ? m.slide : m.turn].at_n1;
-    const double far = stop.sign() > 0.0 ? limits.upper - x : x - limits.lower;
+    const double far = stop.sign() > 0.0 ? limits.upper - c.at_n1 : c.at_n1 - limits.lower;
     least = std::min(least, (far + limits.law.tolerance) / limits.law.tolerance);
   });
   return least;
@@ -433,9 +454,8 @@ void Resistance::initialize(double* memory) const {
 }
 
 void Resistance::commit(const View& v, double* memory) const {
-  const Motion m = motion(v, false);
   if (data_.friction) {
-    const Bristle b = left_bristle(v, m);
+    const Bristle b = left_bristle(v, motion(v, false));
     BristleMemory after;
     set(after.bristle,
         kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n.transpose() * b.at_n1) : b.at_n1);
@@ -443,18 +463,18 @@ void Resistance::commit(const View& v, double* memory) const {
     write_record(after, memory);
   }
   for_limits([&](const JointLimits& limits, bool slides, int at) {
-    const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], at);
+    const Stop stop = stop_of(v, limits, slides, place(v, slides), at);
     stop.remember(stop_force(stop, v.step).value, memory + at);
   });
 }
 
 /// @eq{joint-stop-exit}
 void Resistance::impacts(const View& v, std::vector<Impact>& list) const {
-  const Motion m = motion(v, true);
   for_limits([&](const JointLimits& limits, bool slides, int at) {
-    const Coordinate& c = m.of[slides ? m.slide : m.turn];
-    const Stop stop = stop_of(v, limits, slides, c, at);
+    const Stop stop = stop_of(v, limits, slides, place(v, slides), at);
     if (!stop.jumps() && !stop.carries()) return;
+    const Motion m = motion(v, true);
+    const Coordinate& c = m.of[slides ? m.slide : m.turn];
     Impact impact;
     impact.on_a = stop.sign() * c.by_a;
     impact.on_b = stop.sign() * c.by_b;
@@ -480,9 +500,8 @@ ResistanceReport Resistance::report(const View& v) const {
       r.friction[static_cast<std::size_t>(i)] = -f.stiffness * m.of[i].lever * kept[i];
     r.slips = memory.slips != 0.0;
   }
-  const Motion m = motion(v, false);
   for_limits([&](const JointLimits& limits, bool slides, int memory) {
-    const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], memory);
+    const Stop stop = stop_of(v, limits, slides, place(v, slides), memory);
     (slides ? r.slide : r.turn) = stop.sign() * stop.law().force(stop.gap_n1());
   });
   for_ends([&](const JointLimits& limits, bool slides, double sign, double, int entry) {

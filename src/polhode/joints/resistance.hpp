@@ -96,6 +96,8 @@ class Resistance {
   [[nodiscard]] bool has_barrier() const {
     return (data_.slide && !data_.slide->by_rows) || (data_.turn && !data_.turn->by_rows);
   }
+  /// Whether its friction depends on the joint's reaction.
+  [[nodiscard]] bool rubs_by_reaction() const { return data_.friction && data_.friction->mu > 0.0; }
   /// Whether it exerts forces besides stops that are rows.
   [[nodiscard]] bool has_forces() const { return data_.friction || has_barrier(); }
   /// Number of stops that are rows: ends of coordinates.
@@ -139,9 +141,12 @@ class Resistance {
   /// Adds whether friction sticks, its direction after the last step, and whether it still opposes
   /// the motion: one that has turned around in a step slips to its end.
   void pieces(const View& view, ForcePieces& pieces) const;
+  /// Adds the part of its load under which each stop rests. @param memory  As View::memory.
+  void stop_pieces(const double* memory, ForcePieces& pieces) const;
 
  private:
   static constexpr int kMax = 3;
+  struct Place;
   struct Coordinate;
   struct Motion;
   struct Bristle;
@@ -170,9 +175,14 @@ class Resistance {
   /// stops that are rows.
   template <class What>
   void for_ends(What&& what) const;
+  /// Values of the displacement along z, or the distance, and of the angle about z.
+  [[nodiscard]] Place place(const View& view, bool slides) const;
+  /// Whether it exerts no force in the step: without friction, and away from all stops at both
+  /// ends.
+  [[nodiscard]] bool idle(const View& view) const;
   /// Active stop of a coordinate in the step.
   [[nodiscard]] Stop stop_of(const View& view, const JointLimits& limits, bool slides,
-                             const Coordinate& c, int memory) const;
+                             const Place& place, int memory) const;
 
   Kind kind_;
   JointResistance data_;

@@ -9,9 +9,13 @@
 
 namespace polhode {
 
-/// One free coordinate over the step.
-struct Resistance::Coordinate {
+/// Values of a coordinate at both ends of the step.
+struct Resistance::Place {
   double at_n = 0.0, at_n1 = 0.0;
+};
+
+/// One free coordinate over the step.
+struct Resistance::Coordinate : Resistance::Place {
   /// Factor of the coordinate in the bristle: for an angle the sleeve's radius.
   double lever = 1.0;
   Vec6 on_a, on_b;     ///< Discrete gradient: wrench by generalised force.

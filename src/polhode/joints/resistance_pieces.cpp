@@ -23,10 +23,10 @@ double Resistance::inertia_about(const Vec3& axis, const BodyStep& a, const Body
   return per_inertia > 0.0 ? 1.0 / per_inertia : 0.0;
 }
 
-void Resistance::pieces(const View& v, ForcePieces& pieces) const {
+void Resistance::stop_pieces(const double* memories, ForcePieces& pieces) const {
   for_limits([&](const JointLimits& limits, bool, int memory) {
     // Falling with the load of a stop at rest, and 1 without one.
-    const auto stop = read_record<StopMemory>(v.memory + memory);
+    const auto stop = read_record<StopMemory>(memories + memory);
     const double load = -stop.side * stop.acceleration * limits.inertia;
     const double scale = limits.law.stiffness * limits.law.tolerance;
     const auto phase = static_cast<contact::ContactPhase>(static_cast<int>(stop.phase));
@@ -35,6 +35,10 @@ void Resistance::pieces(const View& v, ForcePieces& pieces) const {
         (phase == contact::ContactPhase::rest || phase == contact::ContactPhase::landing);
     pieces.slips.push_back(rests ? (scale - load) / (scale + load) : kFree);
   });
+}
+
+void Resistance::pieces(const View& v, ForcePieces& pieces) const {
+  stop_pieces(v.memory, pieces);
   if (!data_.friction) return;
   const auto memory = read_record<BristleMemory>(v.memory);
   const BodyStep& a = v.step.a;

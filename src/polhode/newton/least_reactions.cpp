@@ -20,8 +20,7 @@ bool rubs_by_reaction(const System& system, const InteractionRef& ref) {
   if (!system.group(ref.group).is_of(kTypeTag<Joint>)) return false;
   const Joint& joint = items_of<Joint>(system.group(ref.group))[static_cast<std::size_t>(ref.item)];
   const Resistance* resistance = joint.resistance();
-  return resistance && resistance->data().friction && resistance->data().friction->mu > 0.0 &&
-         !joint.penalised();
+  return resistance && resistance->rubs_by_reaction() && !joint.penalised();
 }
 
 /// Connected components of the interactions with rows.

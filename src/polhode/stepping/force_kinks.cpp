@@ -49,6 +49,7 @@ struct ForceKinks::Between {
 
   [[nodiscard]] BodyStep body(int b, double s) const {
     if (b == kGround) return BodyStep::ground(1.0);
+    if (s == 0.0 || s == 1.0) return system.instant(s == 0.0 ? from : to, b);
     const BodyMotion m = system.motion(from, b), n = system.motion(to, b);
     const Cubic value = cubic_at(s), slope = slope_at(s);
     const auto mixed = [&](const Cubic& c, const auto& x, const auto& y, const auto& x_rate,
@@ -87,6 +88,8 @@ ForceKinks::ForceKinks(const System& system) : system_(&system) {
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     if (nodes.group(g).piecewise()) groups_.push_back(g);
+  BodyContacts* const contacts = system.contacts().get();
+  if (are_rows(contacts)) contacts_ = contacts->impulsive();
 }
 
 ForcePieces ForceKinks::pieces(const Between& states, double s, double histories,
@@ -151,14 +154,59 @@ std::optional<double> ForceKinks::first_turn(const State& from, const State& to,
 ForceKinks::Ends ForceKinks::ends(const State& from, const State& to) const {
   if (none()) return {};
   const Between states{*system_, from, to, to.t - from.t};
-  return {pieces(states, 0.0, 0.0, true), pieces(states, 1.0, 1.0, true)};
+  Ends ends{pieces(states, 0.0, 0.0, true), pieces(states, 1.0, 1.0, true), {}, {}};
+  if (!contacts_) return ends;
+  ends.rows_before = contacts_->closed_rows(from);
+  ends.rows_after = contacts_->closed_rows(to);
+  const double still = system_->touching_gap() / states.H;  // no rotation is below rounding
+  for (const ClosedRow& row : ends.rows_after) {
+    const auto earlier = std::ranges::find(ends.rows_before, row.features, &ClosedRow::features);
+    if (earlier == ends.rows_before.end()) continue;  // slip may jump where a row closes
+    struct Motion {
+      Vec3 slip, spin;
+    };
+    const auto at = [&](const State& state) {
+      const auto motion = [&](int body) {
+        return body == kGround ? BodyMotion{} : system_->motion(state, body);
+      };
+      const BodyMotion a = motion(row.bodies.a), b = motion(row.bodies.b);
+      return Motion{a.v + a.omega().cross(row.point - a.r) - b.v - b.omega().cross(row.point - b.r),
+                    system_->length_scale() * (a.omega() - b.omega())};
+    };
+    const Motion before = at(from), after = at(to);
+    const auto about = [&](const Vec3& x) { return Vec3(row.normal.dot(x) * row.normal); };
+    const auto across = [&](const Vec3& x) { return Vec3(x - about(x)); };
+    const auto turns = [&](const Vec3& x, const Vec3& y) {
+      if (!(x.dot(y) < 0.0) || std::min(x.norm(), y.norm()) <= still) return;
+      ends.turn = std::min(ends.turn, x.norm() / (x.norm() + y.norm()));
+    };
+    if (row.slips)
+      turns(across(before.slip), across(after.slip));
+    else if (earlier->slips)
+      ends.stopped = std::max(ends.stopped, across(before.slip).norm() / system_->length_scale());
+    if (!about(row.turning).isZero(0.0)) turns(about(before.spin), about(after.spin));
+    if (!across(row.turning).isZero(0.0)) turns(across(before.spin), across(after.spin));
+  }
+  return ends;
+}
+
+const ClosedRow* ForceKinks::Ends::later(const ClosedRow& row) const {
+  const auto same = std::ranges::find(rows_after, row.features, &ClosedRow::features);
+  return same != rows_after.end() ? &*same : nullptr;
 }
 
 bool ForceKinks::Ends::passed() const {
   const auto same_state = [](double x, double y) {
     return (std::abs(x) < 1.0 && std::abs(y) < 1.0) || x == y;
   };
-  return before.kinks != after.kinks || before.jumps != after.jumps ||
+  const auto row_passed = [&](const ClosedRow& row) {
+    const ClosedRow* const now = later(row);
+    if (!now || now->slips != row.slips) return true;
+    // Friction that turns around; normals hardly change.
+    return row.slips && row.impulse.dot(now->impulse) < row.pressed * now->pressed;
+  };
+  return turn < 1.0 || std::ranges::any_of(rows_before, row_passed) ||
+         before.kinks != after.kinks || before.jumps != after.jumps ||
          !std::ranges::equal(before.slips, after.slips, same_state);
 }
 
@@ -192,6 +240,13 @@ std::optional<double> ForceKinks::break_away(const State& from, const State& to,
   };
   std::ranges::for_each(items_, look_at_rows);
   std::ranges::for_each(stops_, look_at_rows);
+  for (const ClosedRow& row : ends.rows_before) {
+    const ClosedRow* const now = ends.later(row);
+    if (!now) continue;
+    look(row.pressed / from.dt_last, now->pressed / H, 0.0,
+         std::numeric_limits<double>::infinity());
+    if (!row.slips && !now->slips) look(row.held, now->held, -1.0, 1.0);
+  }
   if (!(first < 1.0)) return std::nullopt;
   return first;
 }

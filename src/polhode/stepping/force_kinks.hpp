@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include <polhode/system/impulsive_contacts.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -16,7 +17,9 @@ class ForceKinks {
   explicit ForceKinks(const System& system);
 
   /// Whether no force of the system has kinks.
-  [[nodiscard]] bool none() const { return items_.empty() && groups_.empty() && stops_.empty(); }
+  [[nodiscard]] bool none() const {
+    return items_.empty() && groups_.empty() && stops_.empty() && !contacts_;
+  }
   /// Parts of a step at its start and its end that are not searched: for kinks, and for jumps.
   struct Margins {
     double kink = 0.0, jump = 0.0;
@@ -33,8 +36,17 @@ class ForceKinks {
   /// Pieces of all forces at both ends of a step.
   struct Ends {
     ForcePieces before, after;
+    std::vector<ClosedRow> rows_before, rows_after;  ///< Of contacts.
+    /// Part of the step at which the first slip or rotation against friction turns around, of
+    /// contacts that were closed before it; 1: none does.
+    double turn = 1.0;
+    /// Largest slip at the start of the step of a contact that slid until then and sticks in it, so
+    /// that it stops or turns around in its first half [1/s]: in lengths of the model.
+    double stopped = 0.0;
     /// Whether they are others at its end, or there is another state of sticking and slipping.
     [[nodiscard]] bool passed() const;
+    /// The same row after the step; null if it is not closed any more.
+    [[nodiscard]] const ClosedRow* later(const ClosedRow& row) const;
   };
   [[nodiscard]] Ends ends(const State& from, const State& to) const;
   /// Part of a step at whose end something that sticks, or rests on a stop, is held by as much as
@@ -55,9 +67,10 @@ class ForceKinks {
                                             bool kept) const;
 
   const System* system_;
-  std::vector<InteractionRef> items_;  ///< With kinks.
-  std::vector<InteractionRef> stops_;  ///< With stops alone.
-  std::vector<int> groups_;            ///< Element groups with kinks.
+  std::vector<InteractionRef> items_;            ///< With kinks.
+  std::vector<InteractionRef> stops_;            ///< With stops alone.
+  std::vector<int> groups_;                      ///< Element groups with kinks.
+  const ImpulsiveContacts* contacts_ = nullptr;  ///< If they are rows.
 };
 
 }  // namespace polhode

@@ -345,8 +345,8 @@ void ImpactResolver::settle(State& state, const Island& island, std::vector<Row>
 }
 
 void ImpactResolver::apply(State& state, const Island& island, const std::vector<Row>& rows,
-                           const std::vector<Vec6>& start, const std::vector<Vec6>& v,
-                           double part) {
+                           const std::vector<Vec6>& start, const std::vector<Vec6>& v, double part,
+                           const Vec* work) {
   std::vector<Vec6> jumps(island.bodies.size());
   for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] = part * (v[i] - start[i]);
   for (const Row& row : rows)
@@ -365,8 +365,9 @@ void ImpactResolver::apply(State& state, const Island& island, const std::vector
     const Row& row = rows[i];
     ResolvedImpact& s = settled_[row.impact];
     Impact& impact = rows_[row.impact].impact;
-    const double p = part * row.impulse,
-                 lost = -p * (row.before + 0.5 * part * (row.speed(v) - row.before));
+    const double p = part * row.impulse;
+    const double lost = work ? -(*work)[static_cast<Eigen::Index>(i)]
+                             : -p * (row.before + 0.5 * part * (row.speed(v) - row.before));
     if (row.turns) {
       s.friction_loss += lost;
     } else if (i > 0 && rows[i - 1].has_friction) {

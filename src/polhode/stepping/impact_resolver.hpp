@@ -82,8 +82,11 @@ class ImpactResolver {
   void add_responses(std::span<const Island> islands, std::vector<std::vector<Row>>& rows);
   void settle(State& state, const Island& island, std::vector<Row> rows);
   /// Applies a part of the impulses of an island's rows, which change its velocities from these.
+  /// @param work  Of each row's impulse along the course of the impact; null: that by mean
+  /// velocities, whose sum over the rows is the same.
   void apply(State& state, const Island& island, const std::vector<Row>& rows,
-             const std::vector<Vec6>& start, const std::vector<Vec6>& v, double part);
+             const std::vector<Vec6>& start, const std::vector<Vec6>& v, double part,
+             const Vec* work = nullptr);
   /// Adds the rows of interactions that only push, as far as they touch or did.
   void find_unilateral(const State& state, const Trial& trial);
   /// Stores which of these are closed, and adds their impulses to their forces.

@@ -47,6 +47,18 @@ std::vector<int> on_the_ground(const System& system, const NewtonEngine& engine)
   return list;
 }
 
+/// Joints of the tree with one body whose forces beside the rows the engine does not sum.
+std::vector<int> beside_rows_on_the_ground(const System& system, const NewtonEngine& engine) {
+  std::vector<int> list;
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    if ((ref.a == kGround) != (ref.b == kGround) && engine.knows_ground(i) &&
+        acts_beside_rows(system, i))
+      list.push_back(i);
+  }
+  return list;
+}
+
 Vec3 vec(const double* x) { return {x[0], x[1], x[2]}; }
 
 }  // namespace
@@ -60,6 +72,7 @@ EnergyLedger::EnergyLedger(const System& system, const LaneKernels& kernels,
       working_(with_work(system)),
       outside_(on_the_ground(system, engine)),
       outside_sweep_(system, on_the_ground(system, engine)),
+      beside_rows_(system, beside_rows_on_the_ground(system, engine)),
       nodes_(system) {
   for (const BodyData& b : system.bodies()) total_mass_ += b.mass;
   for (int i = 0; i < system.nodes().count(); ++i) total_mass_ += system.nodes().node_mass(i);
@@ -191,12 +204,13 @@ void EnergyLedger::before_commit(State& state, Trial& trial) {
   }
   StepContext values_only = trial.context;
   values_only.tangents = false;
-  outside_sweep_.run(steps_, values_only, trial.lambda.data(), state.history.data(),
-                     [&](int interaction, const PairStep& step, const PairTerms& terms) {
-                       const InteractionRef& ref = system_->interactions()[interaction];
-                       if (ref.a != kGround) add_ground(step.a, terms.wrench_a);
-                       if (ref.b != kGround) add_ground(step.b, terms.wrench_b);
-                     });
+  const auto add = [&](int interaction, const PairStep& step, const PairTerms& terms) {
+    const InteractionRef& ref = system_->interactions()[interaction];
+    if (ref.a != kGround) add_ground(step.a, terms.wrench_a);
+    if (ref.b != kGround) add_ground(step.b, terms.wrench_b);
+  };
+  outside_sweep_.run(steps_, values_only, trial.lambda.data(), state.history.data(), add);
+  beside_rows_.run(steps_, values_only, nullptr, state.history.data(), add);
   for (int i = 0; i < 3; ++i) {
     l.impulse[i].add(dt * impulse[i]);
     l.angular_impulse[i].add(dt * turning[i]);

@@ -73,6 +73,7 @@ class EnergyLedger {
   /// Interactions with the ground that are not summed by the engine.
   std::vector<int> outside_;
   InteractionSweep outside_sweep_;
+  InteractionSweep beside_rows_;  ///< Of joints of the tree.
   NodeLedger nodes_;
   std::vector<int> touched_;  ///< Bodies of those.
   struct CoupledMass {

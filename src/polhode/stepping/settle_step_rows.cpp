@@ -167,10 +167,12 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
     closes = closes || of_step.closes();
     stopped = stopped || of_step.stops;
   }
+  Vec work = Vec::Zero(n);
   if (closes || stopped) {
     const VelocityProblem::Result result = closes ? problem.impact() : problem.stop_slip();
     for (Eigen::Index i = 0; i < n; ++i)
       rows[static_cast<std::size_t>(i)].apply(result.impulses[i], v);
+    work = result.work;
     for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
       const Row& row = rows[static_cast<std::size_t>(problem.contacts[k].normal)];
       ResolvedImpact& s = settled_[static_cast<std::size_t>(row.impact)];
@@ -184,7 +186,7 @@ void ImpactResolver::settle_step_rows(State& state, const Island& island, std::v
       note_error(rows[static_cast<std::size_t>(result.report.worst)].impact, result.report.error,
                  problem.w.lpNorm<Eigen::Infinity>());
   }
-  apply(state, island, rows, start, v, 1.0);
+  apply(state, island, rows, start, v, 1.0, &work);
 }
 
 }  // namespace polhode

@@ -61,9 +61,11 @@ class Course {
 
  private:
   [[nodiscard]] Vec2 slip() const { return v_.tail<2>(); }
-  /// Friction impulse per unit normal impulse against a slip.
+  /// Friction impulse per unit normal impulse against a slip: the point of the ellipse that
+  /// dissipates most.
   [[nodiscard]] Vec2 friction(const Vec2& s) const {
-    return -s / std::hypot(s.x() / law_.mu, s.y() / law_.mu_across);
+    const Vec2 weighted(law_.mu * s.x(), law_.mu_across * s.y());
+    return -Vec2(law_.mu * weighted.x(), law_.mu_across * weighted.y()) / weighted.norm();
   }
   [[nodiscard]] Vec2 slip_rate(const Vec2& f) const {
     return (law_.mobility * Vec3(1.0, f.x(), f.y())).tail<2>();

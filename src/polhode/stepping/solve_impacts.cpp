@@ -37,7 +37,8 @@ Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
 }  // namespace
 
 /// Friction impulses one update towards zero slip later, within the cone: a step by the larger
-/// mobility of the two tangents. @eq{impact-friction}
+/// mobility of the two tangents, in the metric in which the cone is round, so that the slip is
+/// against its normal. @eq{impact-friction}
 Eigen::Vector2d ImpactResolver::updated_friction(const Row& along, const Row& across, double normal,
                                                  const std::vector<Vec6>& v) const {
   const Impact& impact = rows_[along.impact].impact;
@@ -45,7 +46,11 @@ Eigen::Vector2d ImpactResolver::updated_friction(const Row& along, const Row& ac
       friction_impulse(impact.along.dot(impact.friction_impulse),
                        impact.across.dot(impact.friction_impulse)),
       before(along.impulse, across.impulse);
-  return in_cone(friction_impulse + before - slip / std::max(along.mobility, across.mobility),
+  const double most = std::max(impact.mu, impact.mu_across);
+  const Eigen::Array2d parts =
+      Eigen::Array2d(impact.mu, impact.mu_across) / (most > 0.0 ? most : 1.0);
+  const Eigen::Vector2d step = (parts.square() * slip.array()).matrix();
+  return in_cone(friction_impulse + before - step / std::max(along.mobility, across.mobility),
                  impact.mu * normal, impact.mu_across * normal) -
          friction_impulse;
 }

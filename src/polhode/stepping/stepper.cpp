@@ -84,7 +84,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     ForceKinks::Ends ends;  // of a step of order 2
     if (verdict.fine && automatic() && !composed() && watches_jumps())
       ends = force_kinks.ends(before, state);
-    const std::optional<double> kink = verdict.fine && !impact && kinked < kTrialsOfKink
+    // Slip that ends jumps to zero, but is located like a turn.
+    const bool turned = ends.turn < 1.0 || ends.stopped > 0.0;
+    const std::optional<double> kink = verdict.fine && (!impact || turned) && kinked < kTrialsOfKink
                                            ? to_kink(before, state, H, planned, ends)
                                            : std::nullopt;
     if (kink) {

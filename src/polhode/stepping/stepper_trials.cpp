@@ -84,8 +84,10 @@ std::optional<double> Stepper::Impl::to_kink(const State& from, const State& rea
   }
   if (!watches_jumps()) return std::nullopt;
   const double whole = first_step(from) / H, at_end = control.tolerance * whole;
-  if (const auto turn = force_kinks.first_turn(from, reached, at_end))
-    return std::max(*turn, at_end);
+  const double of_joints = force_kinks.first_turn(from, reached, at_end).value_or(1.0);
+  const bool stops = ends.stopped * (control.horizon - from.t) > control.tolerance;
+  if (const double turn = std::min({of_joints, ends.turn, stops ? 0.5 : 1.0}); turn < 1.0 - at_end)
+    return std::max(turn, at_end);
   // By halves of the way: the line through two forces is the better the shorter they act.
   const auto away = force_kinks.break_away(from, reached, ends);
   const double near = std::sqrt(control.tolerance) * whole;

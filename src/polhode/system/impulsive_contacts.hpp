@@ -78,6 +78,17 @@ struct ImpulseSearch {
   bool converged = false;  ///< It came below the tolerance.
 };
 
+/// A contact point that was a closed row in the last step of a state.
+struct ClosedRow {
+  std::array<double, 5> features;  ///< Name of the two features that touch.
+  Participants bodies;
+  Vec3 point, normal;     ///< World, in the middle of the step; from b to a.
+  Vec3 impulse, turning;  ///< On a in the step, world [N s], [N m s].
+  double pressed;         ///< Normal part of the impulse [N s].
+  double held;            ///< Friction, as a part of that under which it sticks [-].
+  bool slips;
+};
+
 /// Interface of impulsive contacts: their possible contact points in a step, and their histories.
 class ImpulsiveContacts {
  public:
@@ -115,6 +126,8 @@ class ImpulsiveContacts {
   /// are. Increments must be covered.
   [[nodiscard]] virtual double part_on_one_side(std::span<const BodyStep> instants,
                                                 std::span<const Vec6> increments) const = 0;
+  /// Rows that are closed at a state and pressed in the step before, if contacts are rows.
+  [[nodiscard]] virtual std::vector<ClosedRow> closed_rows(const State& state) const = 0;
   /// Commits an accepted step like BodyContacts::commit().
   virtual Work commit_impulses(State& state, std::span<const BodyStep> steps,
                                const StepContext& context, std::span<const ImpulsePoint> list,

@@ -39,7 +39,7 @@ struct PairStep {
   const BodyStep& a;
   const BodyStep& b;
   const StepContext& context;
-  const double* lambda;   ///< Current multipliers, rows() of them.
+  const double* lambda;   ///< Current multipliers, rows() of them; null: see acts_beside_rows().
   const double* history;  ///< Stored by commit() at t_n.
 };
 
