@@ -281,13 +281,14 @@ auto Joint::with_sides(const PairStep& step, With&& with) const {
   return reversed_ ? with(step.b, step.a) : with(step.a, step.b);
 }
 
-/// Before the start, when there is no history yet, of the present position.
+/// Without a history, as before the start, that at t_n.
 Vec3 Joint::bend(const PairStep& step) const {
   if (!parts_.equal_turns) return Vec3::UnitX();
-  const Vec3 before(step.history + bend());
+  const Vec3 before = step.history ? Vec3(step.history + bend()) : Vec3(Vec3::Zero());
   if (!before.isZero(0.0)) return before;
-  return with_sides(
-      step, [&](const BodyStep& a, const BodyStep& b) { return bend_of(relative_turn(a, b)); });
+  return with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
+    return bend_of((a.Lambda_n * user_frames_.R_a).transpose() * (b.Lambda_n * user_frames_.R_b));
+  });
 }
 
 /// Rotation of the joint frame on b relative to that on a, at t_{n+1}.

@@ -484,31 +484,4 @@ void Resistance::impacts(const View& v, std::vector<Impact>& list) const {
   });
 }
 
-ResistanceReport Resistance::report(const View& v) const {
-  ResistanceReport r;
-  if (data_.friction) {
-    const JointFriction& f = *data_.friction;
-    r.count = kind_ == Kind::revolute || kind_ == Kind::prismatic      ? 1
-              : kind_ == Kind::cylindrical || kind_ == Kind::universal ? 2
-                                                                       : 3;
-    const Motion m = motion(v, false);
-    const auto memory = read_record<BristleMemory>(v.memory);
-    Vec3 kept(memory.bristle);
-    if (kind_ == Kind::spherical)  // from the body's to the joint's axes
-      kept = v.q_n1.R_a.transpose() * (v.step.a.Lambda_n1 * kept);
-    for (int i = 0; i < r.count; ++i)
-      r.friction[static_cast<std::size_t>(i)] = -f.stiffness * m.of[i].lever * kept[i];
-    r.slips = memory.slips != 0.0;
-  }
-  for_limits([&](const JointLimits& limits, bool slides, int memory) {
-    const Stop stop = stop_of(v, limits, slides, place(v, slides), memory);
-    (slides ? r.slide : r.turn) = stop.sign() * stop.law().force(stop.gap_n1());
-  });
-  for_ends([&](const JointLimits& limits, bool slides, double sign, double, int entry) {
-    const double force = sign * read_record<UnilateralMemory>(v.memory + entry).force;
-    (slides ? r.slide : r.turn) += (slides ? 1.0 : limits.radius) * force;
-  });
-  return r;
-}
-
 }  // namespace polhode

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// States of friction and stops of a joint, for steps that end where these change, and its inertia.
+// States of friction and stops of a joint, for steps that end where these change, its report and
+// its inertia.
 #include <polhode/contact_laws/contact_phase.hpp>
 #include <polhode/joints/resistance_coordinates.hpp>
 
@@ -52,6 +53,33 @@ void Resistance::pieces(const View& v, ForcePieces& pieces) const {
   if (one_cone) return pieces.slips.push_back(sign(rate.dot(kept)));
   for (int i = 0; i < cones(); ++i)
     pieces.slips.insert(pieces.slips.end(), {sign(kept[i]), sign(rate[i] * kept[i])});
+}
+
+ResistanceReport Resistance::report(const View& v) const {
+  ResistanceReport r;
+  if (data_.friction) {
+    const JointFriction& f = *data_.friction;
+    r.count = kind_ == Kind::revolute || kind_ == Kind::prismatic      ? 1
+              : kind_ == Kind::cylindrical || kind_ == Kind::universal ? 2
+                                                                       : 3;
+    const Motion m = motion(v, false);
+    const auto memory = read_record<BristleMemory>(v.memory);
+    Vec3 kept(memory.bristle);
+    if (kind_ == Kind::spherical)  // from the body's to the joint's axes
+      kept = v.q_n1.R_a.transpose() * (v.step.a.Lambda_n1 * kept);
+    for (int i = 0; i < r.count; ++i)
+      r.friction[static_cast<std::size_t>(i)] = -f.stiffness * m.of[i].lever * kept[i];
+    r.slips = memory.slips != 0.0;
+  }
+  for_limits([&](const JointLimits& limits, bool slides, int memory) {
+    const Stop stop = stop_of(v, limits, slides, place(v, slides), memory);
+    (slides ? r.slide : r.turn) = stop.sign() * stop.law().force(stop.gap_n1());
+  });
+  for_ends([&](const JointLimits& limits, bool slides, double sign, double, int entry) {
+    const double force = sign * read_record<UnilateralMemory>(v.memory + entry).force;
+    (slides ? r.slide : r.turn) += (slides ? 1.0 : limits.radius) * force;
+  });
+  return r;
 }
 
 }  // namespace polhode
