@@ -78,8 +78,8 @@ TEST(StateArchive, RefusesPlacesBeyondTheEndOfAList) {
   EXPECT_EQ(forged([](State& s) { s.contacts[0] = -5.0; }), contacts);
   EXPECT_EQ(forged([](State& s) { s.contacts[0] = 1e18; }), contacts);
   EXPECT_EQ(forged([](State& s) { s.contacts.pop_back(); }), contacts);
-  // The first number of the last record of a point is its shape.
-  EXPECT_EQ(forged([](State& s) { s.contacts[s.contacts.size() - 26] = 1e9; }), contacts);
+  // The first number of the last record of a row, of 22 numbers, is its shape.
+  EXPECT_EQ(forged([](State& s) { s.contacts[s.contacts.size() - 22] = 1e9; }), contacts);
 }
 
 // Any eight bytes replaced: refused, or a run that ends with a message; the sanitizers watch.
