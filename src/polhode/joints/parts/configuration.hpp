@@ -16,7 +16,7 @@ struct Configuration {
   Vec3 z_a, z_b;  ///< Lever arms from the centres of mass to the joint points [m].
   Mat3 R_a, R_b;  ///< Joint axes x, y, z of each side as columns [-].
   Vec3 bend =
-      Vec3::UnitX();  ///< Of EqualTurns: (w, x, y) of the relative quaternion, some time ago.
+      Vec3::UnitX();  ///< Of EqualTurns: (w, x, y) of the quaternion of an earlier position.
 
   /// From the centre of mass of a to the joint point of b [m].
   [[nodiscard]] Vec3 y() const { return u + z_a; }

@@ -9,8 +9,8 @@ namespace polhode {
 
 /// Quadratic rows that vanish where both sides rotate equally about their own z axes.
 ///
-/// With the quaternion (w, x, y, z) of the relative rotation they are −4wz, −4xz and −4yz: each
-/// vanishes with z, and no two others with w, x or y alone. @eq{joint-equal-turns}
+/// With the quaternion (w, x, y, z) of the relative rotation they are −4wz, −4xz and −4yz, which
+/// all vanish with z alone. @eq{joint-equal-turns}
 struct TurnRow {
   OrthogonalAxes first, second;
   double of_first = 1.0, of_second = -1.0;
@@ -82,8 +82,8 @@ inline constexpr std::array<TurnRow, 3> kTurnRows{
 ///
 /// The rotation that takes the axes of a to those of b then has its axis in the plane that bisects
 /// the angle between the two shafts: their speeds are equal in each position. The multiplier is
-/// half the moment [N m] about the mean shaft. All three rows do no work in a step, whose both ends
-/// satisfy them; so any combination does none.
+/// half the moment [N m] about the mean shaft. None of the three rows does work in a step whose
+/// ends both satisfy them, and so no combination does.
 struct EqualTurns {
   static constexpr int kRows = 1;
 
