@@ -215,8 +215,8 @@ TEST(TreeEngine, SolvesSpringsBetweenNeighboursDistantBodiesAndGround) {
   }
 }
 
-// Stops and friction that do not depend on reactions act beside the rows of joints in the tree, and
-// of a joint that closes a loop.
+// Stops and friction that do not depend on reactions, beside the rows of joints in the tree and
+// those of loops.
 TEST(TreeEngine, SolvesStopsAndConstantFrictionOfJoints) {
   for (double rho_inf : {1.0, 0.5, 0.0})
     for (const char* root : {"revolute", "prismatic"}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A constant-velocity joint that bends through 180 degrees and starts there, against the equations
-// of motion on the sphere of its quaternions (w, x, y, 0).
+// A constant-velocity joint that bends through 180 degrees and starts there, against equations on
+// the sphere of its quaternions (w, x, y, 0).
 #include <cmath>
 #include <string>
 #include <utility>

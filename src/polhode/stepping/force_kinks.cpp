@@ -39,6 +39,12 @@ Vec4 rate_of(const Quat& q, const Vec3& W) {
   return 0.5 * (q * Quat(0.0, W.x(), W.y(), W.z())).coeffs();
 }
 
+/// Row of the same features in a list; null if there is none.
+const ClosedRow* same_row(const std::vector<ClosedRow>& rows, const ClosedRow& row) {
+  const auto same = std::ranges::find(rows, row.features, &ClosedRow::features);
+  return same != rows.end() ? &*same : nullptr;
+}
+
 }  // namespace
 
 /// Two states, and what lies between them.
@@ -160,8 +166,8 @@ ForceKinks::Ends ForceKinks::ends(const State& from, const State& to) const {
   ends.rows_after = contacts_->closed_rows(to);
   const double still = system_->touching_gap() / states.H;  // no rotation is below rounding
   for (const ClosedRow& row : ends.rows_after) {
-    const auto earlier = std::ranges::find(ends.rows_before, row.features, &ClosedRow::features);
-    if (earlier == ends.rows_before.end()) continue;  // slip may jump where a row closes
+    const ClosedRow* const earlier = same_row(ends.rows_before, row);
+    if (!earlier) continue;  // slip may jump where a row closes
     struct Motion {
       Vec3 slip, spin;
     };
@@ -191,8 +197,7 @@ ForceKinks::Ends ForceKinks::ends(const State& from, const State& to) const {
 }
 
 const ClosedRow* ForceKinks::Ends::later(const ClosedRow& row) const {
-  const auto same = std::ranges::find(rows_after, row.features, &ClosedRow::features);
-  return same != rows_after.end() ? &*same : nullptr;
+  return same_row(rows_after, row);
 }
 
 bool ForceKinks::Ends::passed() const {

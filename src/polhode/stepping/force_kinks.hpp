@@ -45,7 +45,7 @@ class ForceKinks {
     double stopped = 0.0;
     /// Whether they are others at its end, or there is another state of sticking and slipping.
     [[nodiscard]] bool passed() const;
-    /// The same row after the step; null if it is not closed any more.
+    /// Row of the same features after the step; null if it is not closed any more.
     [[nodiscard]] const ClosedRow* later(const ClosedRow& row) const;
   };
   [[nodiscard]] Ends ends(const State& from, const State& to) const;

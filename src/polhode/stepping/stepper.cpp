@@ -81,7 +81,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
                                    (automatic() && H * single.jump() > allowed_error(before, H)));
     const bool stopped = impact || (!composed() && !system.contacts() && single.stopped());
     Verdict verdict{.fine = report.newton.converged && !met_stop, .factor = 0.5};
-    ForceKinks::Ends ends;  // of a step of order 2
+    ForceKinks::Ends ends;  // pieces at both ends, at order 2 alone
     if (verdict.fine && automatic() && !composed() && watches_jumps())
       ends = force_kinks.ends(before, state);
     // Slip that ends jumps to zero, but is located like a turn.

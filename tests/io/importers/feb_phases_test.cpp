@@ -75,7 +75,7 @@ TEST_F(FebPhases, AStepReleasesFreedoms) {
   }
 }
 
-// What a step lets go keeps its velocity: 1 m/s, and 1 rad/s about z.
+// Freedoms that a step releases keep their velocity: 1 m/s, and 1 rad/s about z.
 TEST_F(FebPhases, WhatWasDrivenFliesOn) {
   const std::string all = moved("Rx", 3) + moved("Rw", 3) + fixed("bar", "011110");
   const std::string text = steps({phase(all), phase("")}, "", kCurves);
